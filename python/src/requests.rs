@@ -8,6 +8,7 @@ use breakline::data::{
     Bounds, ColorMatch, Column, Lattice, Layer, PointBatch, PointFlags, Return, Shape, returns,
 };
 use breakline::io::OnDamage;
+use breakline::io::geotiff::Overviews;
 use breakline::io::points;
 use breakline::run::{
     self, ColorReliefOptions, Degrees, EdgeLimit, FlatOptions, FlatRule, FrameOptions, Input,
@@ -66,9 +67,10 @@ pub(crate) fn method(name: &str) -> PyResult<Method> {
     choose("method", name, &METHODS)
 }
 
-const GRADIENTS: [(&str, Gradient); 2] = [
+const GRADIENTS: [(&str, Gradient); 3] = [
     ("horn", Gradient::Horn),
     ("zevenbergen-thorne", Gradient::ZevenbergenThorne),
+    ("faces", Gradient::Faces),
 ];
 
 const CURVATURES: [(&str, Quantity); 2] = [
@@ -671,6 +673,14 @@ pub(crate) struct FrameArguments {
     resolution: Option<f64>,
     extent: Option<[f64; 4]>,
     align_to: Option<PathBuf>,
+    overviews: String,
+}
+
+const OVERVIEWS: [(&str, Overviews); 2] = [("auto", Overviews::Auto), ("none", Overviews::None)];
+
+/// Returns the overviews with a name.
+pub(crate) fn overviews(name: &str) -> PyResult<Overviews> {
+    choose("overviews", name, &OVERVIEWS)
 }
 
 impl FrameArguments {
@@ -686,6 +696,7 @@ impl FrameArguments {
             resolution: positive("resolution", self.resolution)?,
             extent: bounds(self.extent),
             align_to: self.align_to.clone(),
+            overviews: overviews(&self.overviews)?,
         })
     }
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use breakline::crs::Crs;
 use breakline::data::{ContourLine, EdgeKind, Frame, Grid, Surface as _};
 use breakline::io::formats::{Content, Product};
-use breakline::io::geotiff::CellFormat;
+use breakline::io::geotiff::{CellFormat, Overviews};
 use breakline::io::{Destination, formats, mapped, mesh};
 use breakline::run::{
     self, CellProduct, Context, ContourOptions, DemOptions, Heights, HillshadeOptions, Model,
@@ -420,7 +420,7 @@ impl Surface {
             let cells = run::color_relief(product, &options, context)?;
             match format.content {
                 Content::Picture => cells.write_picture(target, context),
-                _ => cells.write(target, context).map(drop),
+                _ => cells.write(target, Overviews::None, context).map(drop),
             }
         })
     }
@@ -581,11 +581,12 @@ pub(crate) fn write_cells(
     transform: [f64; 6],
     crs: Option<&str>,
     shades: bool,
-    file: PathBuf,
-    overwrite: bool,
+    target: (PathBuf, bool),
+    overviews: &str,
     call: Call,
 ) -> PyResult<()> {
     let grid = grid(&cells, transform, crs)?;
+    let (overviews, (file, overwrite)) = (requests::overviews(overviews)?, target);
     let format = if shades {
         CellFormat::Shades
     } else {
@@ -607,7 +608,7 @@ pub(crate) fn write_cells(
         if is_picture {
             cells.write_picture(target, context)
         } else {
-            cells.write(target, context).map(drop)
+            cells.write(target, overviews, context).map(drop)
         }
     })
 }

@@ -38,6 +38,13 @@ def test_colors_follow_from_heights():
     assert gray.plot() is not None
 
 
+def test_a_rotated_relief_is_not_drawn(tmp_path):
+    c, s = 0.8, 0.6
+    rotated = breakline.Raster(np.arange(12.0).reshape(3, 4), (c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0))
+    with pytest.raises(breakline.UsageError, match="rotated"):
+        breakline.color_relief(rotated).plot()
+
+
 def test_what_is_no_ramp_is_refused(valley, tmp_path):
     with pytest.raises(breakline.UsageError, match="ramp rainbow: there is no such ramp"):
         breakline.color_relief(valley, resolution=5, ramp="rainbow")

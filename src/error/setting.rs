@@ -32,6 +32,7 @@ settings! {
     AccuracyClass = "accuracy-class",
     AddRidges = "add-ridges",
     AlignTo = "align-to",
+    Overviews = "overviews",
     Along = "along",
     Alpha = "alpha",
     Altitude = "altitude",

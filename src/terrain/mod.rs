@@ -24,6 +24,7 @@
 //! | more points than fit into memory | their triangles, from tiles | [`tiles`] |
 //! | triangles from tiles | the contours of the whole | [`contour::parts`] |
 //! | a surface in parts | a DEM of the whole | [`DemOfParts`] |
+//! | a surface and a frame | slope or aspect of its faces, in cells | [`FaceSlopes`] of a [`GradientMap`] |
 //! | any surface | a check that it is sound | [`surface_flaws`], [`shape_flaws`]; for a TIN also [`Tin::check`] |
 //!
 //! A surface is anything that implements [`Surface`](crate::data::Surface): a [`Tin`], a
@@ -59,6 +60,8 @@ mod crossings;
 mod cut;
 mod difference;
 mod duplicates;
+mod face_gradient;
+mod face_slopes;
 mod focal;
 mod grid_surface;
 mod groups;
@@ -101,6 +104,7 @@ pub use crossings::{CrossingHeights, CrossingRule};
 pub use difference::{Difference, LargeDifference, largest_differences};
 pub use duplicates::DuplicateRule;
 pub(crate) use duplicates::one_per_site;
+pub use face_slopes::FaceSlopes;
 pub use focal::{Focal, Gradient, Hillshade, Light, Quantity, QuantityMap, Ruggedness, Shading};
 pub use grid_surface::GridSurface;
 
@@ -115,7 +119,7 @@ pub use lines::{
 pub(crate) use near_lines::NearLines;
 pub(crate) use nesting::Nesting;
 pub(crate) use point_rim::deciding;
-pub use rasterize::{Canvas, CanvasBlock, Dem, DemOfParts};
+pub use rasterize::{Canvas, CanvasBlock, CellValue, Dem, DemOfParts, GradientMap, GradientSource};
 pub use rim_rule::RimRule;
 pub(crate) use sample::along_curve;
 pub use sample::{Sample, Sampler};

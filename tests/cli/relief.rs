@@ -19,6 +19,61 @@ fn colors(bytes: Vec<u8>) -> (u32, Vec<[u8; 4]>) {
 }
 
 #[test]
+fn slopes_of_faces_are_those_of_triangles() {
+    let folder = folder_with(&[("a.xyz", SLOPE)]);
+    let of = |words: &[&str]| {
+        let mut all = vec!["slope", "--formula", "faces", "-o", "s.tif", "--overwrite"];
+        all.extend(words);
+        run_in(&folder, &all)
+    };
+    of(&["a.xyz", "--percent"]).works(&["100"]);
+    run_in(&folder, &["dem", "a.xyz", "-o", "d.tif"]).works(&[]);
+    of(&["d.tif"]).fails(
+        2,
+        &[
+            "--formula is that of faces, and a raster has none",
+            "pass points, a .tin or a .ply",
+        ],
+    );
+    of(&["a.xyz", "--method", "smooth"]).fails(2, &["leave out --method"]);
+    run_in(
+        &folder,
+        &["tri", "a.xyz", "--formula", "faces", "-o", "t.tif"],
+    )
+    .fails(2, &["faces"]);
+}
+
+#[test]
+fn overviews_may_be_left_out_in_one_piece_and_in_tiles() {
+    let folder = folder_with(&[("a.xyz", SLOPE)]);
+    let of = |words: &[&str]| {
+        let common = [
+            "a.xyz",
+            "--resolution",
+            "0.005",
+            "-o",
+            "out.tif",
+            "--overwrite",
+        ];
+        run_in(&folder, &[words, &common].concat()).works(&[]);
+        bytes(&folder, "out.tif")
+    };
+    for verb in ["dem", "hillshade", "slope"] {
+        let whole = of(&[verb]);
+        let without = of(&[verb, "--overviews", "none"]);
+        assert!(without.len() < whole.len(), "{verb}");
+        assert!(of(&[verb, "-co", "OVERVIEWS=NONE"]) == without, "{verb}");
+        assert!(of(&[verb, "--overviews", "none", "--tiles", "2x2"]) == without);
+        assert!(of(&[verb, "--overviews", "auto", "--tiles", "2x2"]) == whole);
+        let mut decoder = tiff::decoder::Decoder::new(std::io::Cursor::new(without)).unwrap();
+        assert!(!decoder.more_images());
+        let cells = decoder.read_image().unwrap();
+        let mut decoder = tiff::decoder::Decoder::new(std::io::Cursor::new(whole)).unwrap();
+        assert!(decoder.read_image().unwrap() == cells && decoder.more_images());
+    }
+}
+
+#[test]
 fn colors_follow_from_heights_in_a_tin_and_in_a_dem() {
     let folder = folder_with(&[
         ("a.xyz", SLOPE),

@@ -72,6 +72,8 @@ fn the_valley_in_tiles_is_the_valley() {
         "aspect",
         "curvature --formula plan",
         "tri",
+        "slope --formula faces",
+        "aspect --formula faces",
     ] {
         let (verb, options) = quantity.split_once(' ').unwrap_or((quantity, ""));
         assert_same(
@@ -158,6 +160,10 @@ fn grids_in_overlapping_files_are_the_same_in_any_tiles() {
         {
             let tiles = format!("--tiles {columns}x{rows}");
             assert_same(&folder, &words, &[&tiles]);
+            // Centers on edges and vertices, between tiles, too: one of the faces there counts.
+            let verb = ["slope --percent", "aspect"][round % 2];
+            let of_faces = words.replace("dem ", &format!("{verb} --formula faces "));
+            assert_same(&folder, &of_faces, &[&tiles]);
             // Heights that are levels: plateaus, ridges, saddles.
             let words = words
                 .replace("dem ", "contour ")
@@ -374,11 +380,13 @@ fn clipped_surfaces_are_the_same_in_tiles() {
         ),
         (format!("--draped-lines {lines} {bounds}"), "3x9"),
     ] {
-        assert_same(
-            &folder,
-            &format!("dem {valley} {words}"),
-            &[&format!("--tiles {tiles}")],
-        );
+        for verb in ["dem", "aspect --formula faces"] {
+            assert_same(
+                &folder,
+                &format!("{verb} {valley} {words}"),
+                &[&format!("--tiles {tiles}")],
+            );
+        }
     }
     for words in [
         format!("--boundary {boundary}"),

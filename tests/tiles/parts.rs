@@ -128,6 +128,13 @@ fn heights_of_all_methods_are_those_of_one_piece() {
             &format!("tin {valley} {words} --tiles 3x2"),
             "parts.tins",
         );
+        for slopes in ["slope --formula faces --percent", "aspect --formula faces"] {
+            let of = |surface: &str| {
+                let words = format!("{slopes} --resolution 1.3 {surface}");
+                output_of(&folder, &words, "a.tif").0
+            };
+            assert!(of("parts.tins") == of("whole.tin"), "{slopes}: {words}");
+        }
         for method in ["nearest", "natural", "laplace", "smooth", "idw"] {
             let dem = format!("dem --resolution 2.9 --method {method}");
             let of_parts = output_of(&folder, &format!("{dem} parts.tins"), "a.tif").0;

@@ -209,8 +209,8 @@ def write_cells(
     transform: list[float],
     crs: Optional[str],
     shades: bool,
-    file: str,
-    overwrite: bool,
+    target: tuple[str, bool],
+    overviews: str,
     call: _Call,
 ) -> None: ...
 def write_contours(

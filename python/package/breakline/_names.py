@@ -28,6 +28,8 @@ Shading = Literal["standard", "combined", "multidirectional", "igor"]
 #: The colors of heights between those of a ramp.
 Match = Literal["linear", "nearest", "exact"]
 #: From which cells a gradient is computed.
-Gradient = Literal["horn", "zevenbergen-thorne"]
+Gradient = Literal["horn", "zevenbergen-thorne", "faces"]
+#: Smaller images of a raster in its file.
+Overviews = Literal["auto", "none"]
 #: How much a notice matters.
 Severity = Literal["detail", "note", "warning"]

@@ -7,7 +7,7 @@ from typing import Any, Literal, Optional, Union
 
 from . import _inputs
 from ._call import Progress, call
-from ._names import Gradient, Method
+from ._names import Gradient, Method, Overviews
 from ._results import Raster, frame_of, of_cells
 from ._verbs import surface_of, written_by
 from ._written import Written, quantity_of
@@ -40,6 +40,7 @@ def slope(
     z_factor: Optional[float] = None,
     output: Any = None,
     overwrite: bool = False,
+    overviews: Overviews = "auto",
     memory: Any = None,
     tiles: Optional[str] = None,
     job: Any = None,
@@ -62,10 +63,11 @@ def slope(
     percent : bool
         True for percent: 100 is 45 degrees.
     formula
-        ``"horn"``: from the eight cells around, for rough surfaces; ``"zevenbergen-thorne"``: from the four cells beside.
+        ``"horn"``: from the eight cells around, for rough surfaces; ``"zevenbergen-thorne"``: from the four cells beside;
+        ``"faces"``: that of the triangle at the center of the cell (not of a raster).
     z_factor : float, optional
         Factor for heights; by default what converts them to the units of x and y.
-    output, overwrite, memory, tiles, job, resume, update, skip_bad
+    output, overwrite, overviews, memory, tiles, job, resume, update, skip_bad
         Write a file, as for :func:`tin`, and return a :class:`Written`.
     **surface
         Parameters of :func:`tin`.
@@ -90,6 +92,7 @@ def aspect(
     z_factor: Optional[float] = None,
     output: Any = None,
     overwrite: bool = False,
+    overviews: Overviews = "auto",
     memory: Any = None,
     tiles: Optional[str] = None,
     job: Any = None,
@@ -110,10 +113,11 @@ def aspect(
     resolution, extent, align_to, method, threads, progress
         As for :func:`dem`; a raster keeps its cells.
     formula
-        ``"horn"``: from the eight cells around, for rough surfaces; ``"zevenbergen-thorne"``: from the four cells beside.
+        ``"horn"``: from the eight cells around, for rough surfaces; ``"zevenbergen-thorne"``: from the four cells beside;
+        ``"faces"``: that of the triangle at the center of the cell (not of a raster).
     z_factor : float, optional
         Factor for heights; by default what converts them to the units of x and y.
-    output, overwrite, memory, tiles, job, resume, update, skip_bad
+    output, overwrite, overviews, memory, tiles, job, resume, update, skip_bad
         Write a file, as for :func:`tin`, and return a :class:`Written`.
     **surface
         Parameters of :func:`tin`.
@@ -138,6 +142,7 @@ def curvature(
     z_factor: Optional[float] = None,
     output: Any = None,
     overwrite: bool = False,
+    overviews: Overviews = "auto",
     memory: Any = None,
     tiles: Optional[str] = None,
     job: Any = None,
@@ -161,7 +166,7 @@ def curvature(
         ``"profile"``: along the steepest slope; ``"plan"``: across it, positive on spurs.
     z_factor : float, optional
         Factor for heights; by default what converts them to the units of x and y.
-    output, overwrite, memory, tiles, job, resume, update, skip_bad
+    output, overwrite, overviews, memory, tiles, job, resume, update, skip_bad
         Write a file, as for :func:`tin`, and return a :class:`Written`.
     **surface
         Parameters of :func:`tin`.
@@ -184,6 +189,7 @@ def roughness(
     method: Method = "linear",
     output: Any = None,
     overwrite: bool = False,
+    overviews: Overviews = "auto",
     memory: Any = None,
     tiles: Optional[str] = None,
     job: Any = None,
@@ -203,7 +209,7 @@ def roughness(
         are drawn as heights in cells first.
     resolution, extent, align_to, method, threads, progress
         As for :func:`dem`; a raster keeps its cells.
-    output, overwrite, memory, tiles, job, resume, update, skip_bad
+    output, overwrite, overviews, memory, tiles, job, resume, update, skip_bad
         Write a file, as for :func:`tin`, and return a :class:`Written`.
     **surface
         Parameters of :func:`tin`.
@@ -227,6 +233,7 @@ def tri(
     formula: Literal["riley", "wilson"] = "riley",
     output: Any = None,
     overwrite: bool = False,
+    overviews: Overviews = "auto",
     memory: Any = None,
     tiles: Optional[str] = None,
     job: Any = None,
@@ -248,7 +255,7 @@ def tri(
         As for :func:`dem`; a raster keeps its cells.
     formula
         ``"riley"``: the root of the sum of the squares of the eight differences; ``"wilson"``: their mean.
-    output, overwrite, memory, tiles, job, resume, update, skip_bad
+    output, overwrite, overviews, memory, tiles, job, resume, update, skip_bad
         Write a file, as for :func:`tin`, and return a :class:`Written`.
     **surface
         Parameters of :func:`tin`.
@@ -271,6 +278,7 @@ def tpi(
     method: Method = "linear",
     output: Any = None,
     overwrite: bool = False,
+    overviews: Overviews = "auto",
     memory: Any = None,
     tiles: Optional[str] = None,
     job: Any = None,
@@ -290,7 +298,7 @@ def tpi(
         are drawn as heights in cells first.
     resolution, extent, align_to, method, threads, progress
         As for :func:`dem`; a raster keeps its cells.
-    output, overwrite, memory, tiles, job, resume, update, skip_bad
+    output, overwrite, overviews, memory, tiles, job, resume, update, skip_bad
         Write a file, as for :func:`tin`, and return a :class:`Written`.
     **surface
         Parameters of :func:`tin`.

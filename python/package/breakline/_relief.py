@@ -11,7 +11,7 @@ from . import _breakline, _inputs
 from ._call import Progress, call
 from ._names import Match, Method
 from ._pictures import axes
-from ._results import _affine, frame_of
+from ._results import _affine, extent_of, frame_of
 from ._verbs import surface_of, written_by
 from ._written import Written, colors_of
 
@@ -57,10 +57,9 @@ class Relief:
         >>> tin = breakline.tin([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]])
         >>> ax = breakline.color_relief(tin, resolution=5).plot()
         """
-        a, _, c, _, e, f = tuple(self.transform)[:6]
-        rows, columns, _ = self.array.shape
+        extent = extent_of(self.transform, self.array.shape)
         ax = axes(ax)
-        ax.imshow(self.array, **{"extent": (c, c + a * columns, f + e * rows, f), **options})
+        ax.imshow(self.array, **{"extent": extent, **options})
         return ax
 
     def write(

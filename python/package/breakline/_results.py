@@ -12,7 +12,7 @@ from . import _breakline, _inputs, _masked
 from ._call import Progress, call
 from ._compare import Compared, same
 from ._errors import usage
-from ._names import Shading
+from ._names import Overviews, Shading
 from ._pictures import SIDE, axes, missing, page
 
 
@@ -183,18 +183,20 @@ class Raster(Compared):
         >>> dem = breakline.tin([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]]).dem(5)
         >>> ax = dem.plot(cmap="terrain")
         """
-        c, a, b, f, d, e = self._gdal
-        if b or d:
-            raise usage("the raster is rotated, and its cells are no picture", None, "use .array and .transform")
-        rows, columns = self.shape
+        extent = extent_of(self.transform, self.shape)
         ax = axes(ax)
         cells = np.ma.masked_equal(self.array, 0) if self._has_shades else np.ma.masked_invalid(self.array)
-        extent = (c, c + a * columns, f + e * rows, f)
         ax.imshow(cells, **{"extent": extent, "cmap": "gray" if self._has_shades else "viridis", **options})
         return ax
 
     def write(
-        self, path: Any, *, overwrite: bool = False, threads: Optional[int] = None, progress: Progress = None
+        self,
+        path: Any,
+        *,
+        overwrite: bool = False,
+        overviews: Overviews = "auto",
+        threads: Optional[int] = None,
+        progress: Progress = None,
     ) -> None:
         """Write the raster as GeoTIFF; shades also as PNG. The bytes are those of the command line.
 
@@ -204,6 +206,8 @@ class Raster(Compared):
             ``.tif``; for shades also ``.png``.
         overwrite : bool
             Replace a file that exists.
+        overviews
+            ``"none"``: a GeoTIFF without smaller images of it, from which programs draw it at once; written sooner.
         threads, progress
             See :func:`breakline.tin`.
 
@@ -224,7 +228,13 @@ class Raster(Compared):
             cells[cells == 0] = np.nan
         with call(threads, progress) as request:
             _breakline.write_cells(
-                cells, self._gdal, self.crs, bool(shades), _inputs.path(path, "path"), bool(overwrite), request
+                cells,
+                self._gdal,
+                self.crs,
+                bool(shades),
+                (_inputs.path(path, "path"), bool(overwrite)),
+                _inputs.name(overviews, "overviews"),
+                request,
             )
 
     def _cells(self) -> np.ndarray:
@@ -278,12 +288,21 @@ class Raster(Compared):
             return of_cells(self._surface().hillshade(frame, "linear", sun, request))
 
 
-def frame_of(resolution: Any, extent: Any, align_to: Any) -> "dict[str, Any]":
-    """Return the size and the position of a raster as the library takes them."""
+def extent_of(transform: Any, shape: "tuple[int, ...]") -> "tuple[float, float, float, float]":
+    """Return the extent of an image of these rows and columns, as matplotlib takes it."""
+    a, b, c, d, e, f = tuple(transform)[:6]
+    if b or d:
+        raise usage("the raster is rotated, and its cells are no picture", None, "use .array and .transform")
+    return (c, c + a * shape[1], f + e * shape[0], f)
+
+
+def frame_of(resolution: Any, extent: Any, align_to: Any, overviews: Any = "auto") -> "dict[str, Any]":
+    """Return the size and the position of a raster, and its overviews, as the library takes them."""
     return {
         "resolution": _inputs.optional_number(resolution, "resolution"),
         "extent": _inputs.bounds(extent, "extent"),
         "align_to": None if align_to is None else _inputs.path(align_to, "align_to"),
+        "overviews": _inputs.name(overviews, "overviews"),
     }
 
 

@@ -17,7 +17,7 @@ from ._call import Progress, call
 from ._errors import ArgumentTypeError, usage
 from ._compare import Compared
 from ._inputs import PathLike
-from ._names import Kernel, Method, OnCrossing, Shading
+from ._names import Kernel, Method, OnCrossing, Overviews, Shading
 from ._points import _read, _systems
 from ._results import Contours, Raster, draw, frame_of, light, of_cells
 from ._surface import FOR_ANY, Building
@@ -69,7 +69,8 @@ def written_by(verb: "Callable[..., Any]", given: "dict[str, Any]") -> "Optional
     if isinstance(points, (Tin, Raster)):
         _refuse(surface, "this")
         running = {name: given.pop(name) for name in ("threads", "progress")}
-        return write_made(partial(verb, points, **given), how, running)
+        of_file = {name: given.pop(name) for name in ("overviews",) if name in given}
+        return write_made(partial(verb, points, **given), how, running, of_file)
     return write(verb.__name__, points, {**given, **surface}, how)
 
 
@@ -95,6 +96,7 @@ def dem(
     align_to: Any = ...,
     method: Method = ...,
     output: PathLike,
+    overviews: Overviews = ...,
     **writing: Unpack[Writing],
 ) -> Written: ...
 def dem(
@@ -106,6 +108,7 @@ def dem(
     method: Method = "linear",
     output: Any = None,
     overwrite: bool = False,
+    overviews: Overviews = "auto",
     memory: Any = None,
     tiles: Optional[str] = None,
     job: Any = None,
@@ -129,6 +132,8 @@ def dem(
     output, overwrite, memory, tiles, job, resume, update, skip_bad
         Write a file, as for :func:`tin`, and return a :class:`Written`: files that need more memory are worked on in
         tiles, with the same result.
+    overviews
+        ``"none"``: write a GeoTIFF without smaller images of it; see :meth:`Raster.write`.
     **surface
         Parameters of :func:`tin`.
 
@@ -231,6 +236,7 @@ def hillshade(
     altitude: Optional[float] = ...,
     z_factor: Optional[float] = ...,
     output: PathLike,
+    overviews: Overviews = ...,
     **writing: Unpack[Writing],
 ) -> Written: ...
 def hillshade(
@@ -246,6 +252,7 @@ def hillshade(
     z_factor: Optional[float] = None,
     output: Any = None,
     overwrite: bool = False,
+    overviews: Overviews = "auto",
     memory: Any = None,
     tiles: Optional[str] = None,
     job: Any = None,
@@ -269,6 +276,8 @@ def hillshade(
     output, overwrite, memory, tiles, job, resume, update, skip_bad
         Write a file, as for :func:`tin`, and return a :class:`Written`: files that need more memory are worked on in
         tiles, with the same result.
+    overviews
+        ``"none"``: write a GeoTIFF without smaller images of it; see :meth:`Raster.write`.
     **surface
         Parameters of :func:`tin`.
 

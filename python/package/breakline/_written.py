@@ -331,17 +331,19 @@ _QUANTITIES: "dict[str, dict[str, Any]]" = {
 
 #: Parameters of verbs other than those of a surface, and their defaults.
 _OF_VERBS: "dict[str, dict[str, Any]]" = {
-    "dem": {"resolution": None, "extent": None, "align_to": None, "method": "linear"},
+    "dem": {"resolution": None, "extent": None, "align_to": None, "method": "linear", "overviews": "auto"},
     "hillshade": {
         "resolution": None, "extent": None, "align_to": None, "method": "linear",
-        "shading": "standard", "azimuth": None, "altitude": None, "z_factor": None,
+        "shading": "standard", "azimuth": None, "altitude": None, "z_factor": None, "overviews": "auto",
     },
     "color_relief": {
         "resolution": None, "extent": None, "align_to": None, "method": "linear",
         "ramp": "elevation", "match": "linear",
     },
     **{
-        verb: {"resolution": None, "extent": None, "align_to": None, "method": "linear", **own}
+        verb: {
+            "resolution": None, "extent": None, "align_to": None, "method": "linear", "overviews": "auto", **own
+        }
         for verb, own in _QUANTITIES.items()
     },
     "contour": {"interval": None, "base": 0.0, "levels": ()},
@@ -355,14 +357,16 @@ def refuse_how(how: "dict[str, Any]") -> None:
         raise usage(f"{name} is for writing a file", how[name], "name it: output='dem.tif'")
 
 
-def write_made(make: "Callable[..., Any]", how: "dict[str, Any]", running: "dict[str, Any]") -> Written:
+def write_made(
+    make: "Callable[..., Any]", how: "dict[str, Any]", running: "dict[str, Any]", of_file: "dict[str, Any]"
+) -> Written:
     """Write what is made of a surface in memory, which is in one piece."""
     for name in _given(how):
         if name != "overwrite":
             message = f"{name} is for files of points: a surface in memory is in one piece"
             raise usage(message, how[name], f"leave {name} out")
     output = _inputs.path(how["output"], "output")
-    make(**running).write(output, overwrite=how["overwrite"], **running)
+    make(**running).write(output, overwrite=how["overwrite"], **of_file, **running)
     return Written(Path(output), {"in_tiles": False, "has_holes": False})
 
 
@@ -443,7 +447,7 @@ def _product(verb: str, own: "dict[str, Any]") -> "dict[str, Any]":
         if interval is not None and heights:
             raise usage("interval and levels are given", None, "use one of them")
         return {"levels": (interval, _inputs.number(own["base"], "base"), heights)}
-    frame = frame_of(own["resolution"], own["extent"], own["align_to"])
+    frame = frame_of(own["resolution"], own["extent"], own["align_to"], own.get("overviews", "auto"))
     product: "dict[str, Any]" = {"frame": frame, "method": _inputs.name(own["method"], "method")}
     if verb == "hillshade":
         product["light"] = light(own["shading"], own["azimuth"], own["altitude"], own["z_factor"])

@@ -362,7 +362,15 @@ impl Translation<'_> {
                 let value = self.value();
                 self.formats.push(value);
             }
-            Creation => require_as_written(name, &self.value())?,
+            Creation => {
+                let value = self.value();
+                match value.eq_ignore_ascii_case("OVERVIEWS=NONE") {
+                    true => self
+                        .ours
+                        .extend(["--overviews", "none"].map(OsString::from)),
+                    false => require_as_written(name, &value)?,
+                }
+            }
             Nothing => {}
             Refused(cure) => {
                 let verb = self.verb;
@@ -418,8 +426,8 @@ fn require_as_written(name: &str, value: &str) -> Result<()> {
         return Ok(());
     }
     Err(Error::usage(format!("{name} {value}: there are no creation options")).cure(
-        "leave it out: a GeoTIFF is tiled, with overviews, DEFLATE with predictor 3, BigTIFF if necessary; \
-         `gdal_translate -co` converts it",
+        "leave it out: a GeoTIFF is tiled, with overviews (unless `--overviews none`), DEFLATE with predictor 3, \
+         BigTIFF if necessary; `gdal_translate -co` converts it",
     ))
 }
 

@@ -134,6 +134,7 @@ pub(crate) fn frame(args: &FrameArgs) -> Result<FrameOptions> {
         resolution: args.resolution,
         extent,
         align_to: args.align_to.clone(),
+        overviews: args.overviews.into(),
     })
 }
 

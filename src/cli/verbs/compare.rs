@@ -62,7 +62,11 @@ pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<Exit> {
         let file = target.within(&outputs.set);
         match (target.kind, &product.areas) {
             (Written::Areas, Some(areas)) => areas.write(file, &context)?,
-            _ => drop(product.cells().write(file, &context)?),
+            _ => drop(
+                product
+                    .cells()
+                    .write(file, options.frame.overviews, &context)?,
+            ),
         }
     }
     commit(outputs, console)?;

@@ -116,7 +116,7 @@ impl<'a> Inputs<'a> {
         let spacing = mean_distance(files.iter().map(PlannedFile::extent));
         let max_edge = request.max_edge.length(spacing, &Units::of(crs.as_ref()));
         let frame = match verb.keeps() {
-            Keeps::Heights(options) => Some(frame_of(
+            Keeps::Heights(options) | Keeps::Gradients(options) => Some(frame_of(
                 options,
                 drawn_extent(extent, &known, request),
                 crs.as_ref(),

@@ -400,6 +400,7 @@ impl Job {
         let points = plan.point_count();
         let drawn = match self.verb.keeps() {
             Keeps::Triangles => points.saturating_mul(BYTES_A_POINT_OF_PART),
+            Keeps::Gradients(_) => cells.saturating_mul(4),
             Keeps::Heights(_) | Keeps::Contours(_) => cells,
         };
         JobSize {

@@ -16,6 +16,7 @@ use crate::run::products::contour::ContourOptions;
 use crate::run::products::frame::{self, FrameOptions};
 use crate::run::sources::tin_parts::WrittenParts;
 use crate::run::verbs::Tiles;
+use crate::terrain::{CellValue, GradientSource};
 
 /// Counts of a job that is done.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -182,8 +183,13 @@ struct KeptTiles<'a> {
     report: &'a JobReport,
 }
 
-impl Tiles for KeptTiles<'_> {
-    fn heights(&self, options: &FrameOptions, context: &Context) -> Result<Box<dyn BlockSource>> {
+impl KeptTiles<'_> {
+    /// Returns what was drawn in cells.
+    fn cells<V: CellValue>(
+        &self,
+        options: &FrameOptions,
+        context: &Context,
+    ) -> Result<DrawnCells<V>> {
         let KeptTiles { job, report } = self;
         job.require_triangles(report)?;
         let Some(drawn) = job.plan.frame else {
@@ -196,12 +202,26 @@ impl Tiles for KeptTiles<'_> {
             &Journal::new(context),
         )?;
         frame::require_filled(options, &frame, &report.extent, || report.area)?;
-        Ok(Box::new(DrawnCells::open(
+        DrawnCells::open(
             job.step_files(),
             (drawn, job.plan.blocks_before),
             frame,
             report.crs.clone(),
-        )?))
+        )
+    }
+}
+
+impl Tiles for KeptTiles<'_> {
+    fn heights(&self, options: &FrameOptions, context: &Context) -> Result<Box<dyn BlockSource>> {
+        Ok(Box::new(self.cells::<f32>(options, context)?))
+    }
+
+    fn gradients(
+        &self,
+        options: &FrameOptions,
+        context: &Context,
+    ) -> Result<Box<dyn GradientSource>> {
+        Ok(Box::new(self.cells::<[f64; 2]>(options, context)?))
     }
 
     fn write_contours(

@@ -1,5 +1,6 @@
 //! The cells that tasks have drawn: as they are written, and as one raster.
 
+use std::marker::PhantomData;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use rustc_hash::FxHashMap;
@@ -9,27 +10,27 @@ use super::task_file::{Block, TaskFile, TaskName, TaskWriter};
 use crate::crs::Crs;
 use crate::data::{BlockSource, Frame, Window};
 use crate::error::Result;
-use crate::terrain::Canvas;
+use crate::terrain::{Canvas, CellValue, GradientSource};
 
 /// Files that are kept open.
 const MOST_OPEN: usize = 64;
 
 /// A canvas whose blocks go to the file of a task when they become many.
-pub(super) struct Drawing {
-    canvas: Canvas,
+pub(super) struct Drawing<V> {
+    canvas: Canvas<V>,
     /// The column and the row from which those of blocks are counted.
     counted_from: [u64; 2],
     /// Column and row of the first cell of each block, and where its heights are.
     table: Vec<([u64; 2], Block)>,
 }
 
-/// Blocks on a canvas before they are written: 32 MB.
-const MOST_BLOCKS: usize = 2048;
+/// Bytes of the blocks on a canvas before they are written.
+const MOST_BYTES: usize = 1 << 25;
 
 /// Rows of blocks that a triangle may meet before it is drawn row by row.
 const MOST_ROWS: usize = 8;
 
-impl Drawing {
+impl<V: CellValue> Drawing<V> {
     /// Begins the section of cells. Blocks are counted from the first one after `blocks_before`,
     /// those that were added on the left and above since the job began.
     pub(super) fn new(
@@ -56,7 +57,7 @@ impl Drawing {
         for first in rows.clone().step_by(step) {
             self.canvas
                 .draw_in(corners, first..(first + step).min(rows.end));
-            if self.canvas.block_count() > MOST_BLOCKS {
+            if self.canvas.block_count() * Canvas::SIDE.pow(2) * V::BYTES > MOST_BYTES {
                 self.write_blocks(writer)?;
             }
         }
@@ -67,10 +68,7 @@ impl Drawing {
         let mut bytes = Vec::new();
         for block in self.canvas.take_blocks() {
             bytes.clear();
-            block
-                .heights
-                .iter()
-                .for_each(|height| bytes.extend_from_slice(&height.to_le_bytes()));
+            block.values.iter().for_each(|value| value.put(&mut bytes));
             let [column, row] = self.counted_from;
             // Those before it have negative numbers.
             let first = [
@@ -100,10 +98,10 @@ fn first_cell(blocks: [u64; 2]) -> [u64; 2] {
     blocks.map(|count| count.saturating_mul(Canvas::SIDE as u64))
 }
 
-/// The heights that all tasks have drawn, as one raster.
+/// The heights or gradients that all tasks have drawn, as one raster.
 ///
-/// Tasks that have a height for the same cell agree on it, so any of them may be asked.
-pub(super) struct DrawnCells {
+/// Of tasks that have a value for the same cell [one counts](CellValue::or).
+pub(super) struct DrawnCells<V> {
     /// The frame of the result.
     frame: Frame,
     /// The frame that was drawn in, and the column and row in it of the first cell of the result.
@@ -114,9 +112,10 @@ pub(super) struct DrawnCells {
     /// For each block, by its column and row: the files that have it, and where.
     blocks: FxHashMap<[u32; 2], Vec<(u32, Block)>>,
     open: Mutex<FxHashMap<u32, Arc<Mutex<TaskFile>>>>,
+    of: PhantomData<fn() -> V>,
 }
 
-impl DrawnCells {
+impl<V: CellValue> DrawnCells<V> {
     /// Opens the cells of these tasks, which were drawn in a frame that was enlarged by some blocks
     /// on the left and above.
     ///
@@ -147,8 +146,8 @@ impl DrawnCells {
                 if !is_block || column % side + row % side != 0 {
                     return Err(file.damaged());
                 }
-                let size =
-                    4 * side.min(drawn.width as u64 - column) * side.min(drawn.height as u64 - row);
+                let [width, height] = [drawn.width as u64 - column, drawn.height as u64 - row];
+                let size = V::BYTES as u64 * side.min(width) * side.min(height);
                 if block.length != size {
                     return Err(file.damaged());
                 }
@@ -170,6 +169,7 @@ impl DrawnCells {
             tasks,
             blocks,
             open: Mutex::default(),
+            of: PhantomData,
         })
     }
 
@@ -187,27 +187,18 @@ impl DrawnCells {
         Ok(file)
     }
 
-    /// Reads the heights of a block from one of the files.
-    fn heights(&self, number: u32, block: Block, bytes: &mut Vec<u8>) -> Result<()> {
+    /// Reads the values of a block from one of the files.
+    fn values_of(&self, number: u32, block: Block, bytes: &mut Vec<u8>) -> Result<()> {
         let file = self.file(number)?;
         file.lock()
             .unwrap_or_else(PoisonError::into_inner)
             .read(block, bytes)
     }
-}
 
-impl BlockSource for DrawnCells {
-    fn frame(&self) -> Frame {
-        self.frame
-    }
-
-    fn crs(&self) -> Option<&Crs> {
-        self.crs.as_ref()
-    }
-
-    fn fill(&self, window: Window, out: &mut [f32]) -> Result<()> {
+    /// Fills `out` with the values of a window.
+    fn values(&self, window: Window, out: &mut [V]) -> Result<()> {
         self.frame.check_window(window, out.len())?;
-        out.fill(f32::NAN);
+        out.fill(V::NONE);
         let side = Canvas::SIDE as i64;
         // Columns and rows of the drawn frame; beyond it no cell has a height.
         let from = [
@@ -233,7 +224,7 @@ impl BlockSource for DrawnCells {
                 ]
                 .map(|n| n.min(side));
                 for &(number, block) in parts {
-                    self.heights(number, block, &mut bytes)?;
+                    self.values_of(number, block, &mut bytes)?;
                     for row in
                         rows.start.max(block_row * side)..rows.end.min(block_row * side + height)
                     {
@@ -243,17 +234,43 @@ impl BlockSource for DrawnCells {
                             as usize;
                         let to = ((row - from[1]) * size[0] + first - from[0]) as usize;
                         let count = (end - first) as usize;
-                        let heights = bytes[4 * line..4 * (line + count)].chunks_exact(4);
-                        for (cell, height) in out[to..to + count].iter_mut().zip(heights) {
-                            let height = f32::from_le_bytes(std::array::from_fn(|i| height[i]));
-                            if !height.is_nan() {
-                                *cell = height;
-                            }
+                        let values = bytes[V::BYTES * line..V::BYTES * (line + count)]
+                            .chunks_exact(V::BYTES);
+                        for (cell, value) in out[to..to + count].iter_mut().zip(values) {
+                            *cell = cell.or(V::of_bytes(value));
                         }
                     }
                 }
             }
         }
         Ok(())
+    }
+}
+
+impl BlockSource for DrawnCells<f32> {
+    fn frame(&self) -> Frame {
+        self.frame
+    }
+
+    fn crs(&self) -> Option<&Crs> {
+        self.crs.as_ref()
+    }
+
+    fn fill(&self, window: Window, out: &mut [f32]) -> Result<()> {
+        self.values(window, out)
+    }
+}
+
+impl GradientSource for DrawnCells<[f64; 2]> {
+    fn frame(&self) -> Frame {
+        self.frame
+    }
+
+    fn crs(&self) -> Option<&Crs> {
+        self.crs.as_ref()
+    }
+
+    fn gradients(&self, window: Window, out: &mut [[f64; 2]]) -> Result<()> {
+        self.values(window, out)
     }
 }

@@ -552,7 +552,8 @@ fn add_points_of_tile(tile: u32, divided: &mut TaskFile, all: &mut Vec<[f64; 3]>
 
 /// What triangles become.
 enum Drawn {
-    Cells(Drawing),
+    Cells(Drawing<f32>),
+    Gradients(Drawing<[f64; 2]>),
     Contours(ContourCollector),
     /// Faces of the triangulation.
     Faces(PartFaces),
@@ -585,7 +586,10 @@ impl<'a> KeptTriangles<'a> {
             (Keeps::Heights(_), Some(frame)) => {
                 Drawn::Cells(Drawing::new(frame, job.plan.blocks_before, writer)?)
             }
-            (Keeps::Heights(_), None) => {
+            (Keeps::Gradients(_), Some(frame)) => {
+                Drawn::Gradients(Drawing::new(frame, job.plan.blocks_before, writer)?)
+            }
+            (Keeps::Heights(_) | Keeps::Gradients(_), None) => {
                 return Err(Error::format(
                     "the plan of the job lacks the frame of the raster",
                 ));
@@ -652,6 +656,7 @@ impl<'a> KeptTriangles<'a> {
             .for_each(|corner| self.extent.add(corner));
         match &mut self.drawn {
             Drawn::Cells(drawing) => drawing.draw(corners, writer),
+            Drawn::Gradients(drawing) => drawing.draw(corners, writer),
             Drawn::Contours(collector) => {
                 collector.add(triangle);
                 Ok(())
@@ -688,6 +693,7 @@ impl<'a> KeptTriangles<'a> {
         let mut contour_edges = 0;
         match self.drawn {
             Drawn::Cells(drawing) => drawing.finish(writer)?,
+            Drawn::Gradients(drawing) => drawing.finish(writer)?,
             Drawn::Faces(faces) => faces.finish(part, writer)?,
             Drawn::Contours(collector) => {
                 let parts = collector.finish()?;

@@ -6,13 +6,18 @@ use super::surface::{Model, SurfaceProduct};
 use crate::crs::Crs;
 use crate::data::{self, BlockSource, Colors, Frame, Grid, Rgba, Surface, Window};
 use crate::error::{Error, Result, Setting, wording};
-use crate::io::geotiff::{self, CellFormat, RasterSummary, WriteOptions};
+use crate::io::geotiff::{self, CellFormat, Overviews, RasterSummary, WriteOptions};
+use crate::io::mapped::Mapped;
 use crate::io::{Destination, png};
 use crate::run::context::notice::Notice;
 use crate::run::context::units::Units;
 use crate::run::context::watched::Watched;
 use crate::run::context::{Context, Journal, Size, Stage};
-use crate::terrain::{Dem, Hillshade, Light, Method, Quantity, QuantityMap, Shading};
+use crate::run::sources::tin_parts::TinParts;
+use crate::terrain::{
+    CompactTin, Dem, DemOfParts, FaceSlopes, Gradient, GradientMap, GradientSource, Hillshade,
+    Light, Method, Quantity, QuantityMap, Shading,
+};
 
 /// The light of a hillshade. By default it comes from the northwest, 45 degrees above the horizon.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
@@ -98,6 +103,33 @@ impl QuantityOptions {
             z_factor: None,
         }
     }
+
+    /// Returns true if the quantity is that of the face at the center of each cell.
+    pub fn is_of_faces(&self) -> bool {
+        self.quantity.gradient() == Some(Gradient::Faces)
+    }
+
+    /// Returns an error unless the slopes of faces go with linear heights.
+    ///
+    /// # Errors
+    /// Names the options.
+    pub fn check(&self) -> Result<()> {
+        match self.is_of_faces() && self.method != Method::Linear {
+            true => Err(Error::usage(wording![
+                Setting::Formula,
+                " is that of faces, which are plane, and heights by this ",
+                Setting::Method,
+                " are not"
+            ])
+            .cure(wording![
+                "leave out ",
+                Setting::Method,
+                ", or choose another ",
+                Setting::Formula
+            ])),
+            false => Ok(()),
+        }
+    }
 }
 
 /// The cells of a raster. For a surface they are computed on demand, so that the raster may be
@@ -177,8 +209,8 @@ pub fn hillshade<'a>(
 /// Prepares a quantity in cells, such as the slope; NaN where there is none.
 ///
 /// # Errors
-/// If the frame cannot be chosen, or is chosen for a raster, which keeps its own; or if the run is
-/// canceled.
+/// Those of [`QuantityOptions::check`]; if the frame cannot be chosen, or is chosen for a raster,
+/// which keeps its own; if the slopes of faces are asked of a raster; or if the run is canceled.
 ///
 /// # Complexity
 /// Linear in the triangles.
@@ -187,7 +219,14 @@ pub fn quantity<'a>(
     options: &QuantityOptions,
     context: &Context,
 ) -> Result<CellProduct<'a>> {
+    options.check()?;
     let journal = Journal::new(context);
+    let is_raster = matches!(product.model, Model::Raster(_) | Model::RasterFile(_));
+    if options.is_of_faces() && !is_raster {
+        let (source, surface) = gradients(product, &options.frame, &journal)?;
+        let cells = CellProduct::face_slopes_of(source, options, product.crs(), &journal)?;
+        return Ok(cells.over(surface));
+    }
     let (source, surface) = given_or_drawn(product, &options.frame, options.method, &journal)?;
     let cells = CellProduct::quantity_of(source, options, product.crs(), &journal)?;
     Ok(cells.over(surface))
@@ -232,15 +271,46 @@ fn heights<'a>(
     if let Model::Parts(parts) = &product.model
         && method == Method::Linear
     {
-        let chosen = frame::over_extent(frame, product.extent(), product.crs(), journal)?;
-        frame::require_filled(frame, &chosen, &product.extent(), || parts.index().area)?;
-        return Ok((parts.dem(chosen)?, None));
+        return Ok((
+            Box::new(cells_of_parts(product, parts, frame, journal)?),
+            None,
+        ));
     }
     let surface = product.triangles()?;
     let frame = frame::choose(frame, surface, product.extent(), journal)?;
     let dem = Dem::new(surface, frame)?;
     journal.context.check()?;
     Ok((Box::new(dem.with_method(method)?), Some(surface)))
+}
+
+/// Returns the gradients of the faces of a surface.
+fn gradients<'a>(
+    product: &'a SurfaceProduct,
+    frame: &FrameOptions,
+    journal: &Journal,
+) -> Result<(Box<dyn GradientSource + 'a>, Option<&'a dyn Surface>)> {
+    journal.context.check()?;
+    if let Model::Parts(parts) = &product.model {
+        return Ok((
+            Box::new(cells_of_parts(product, parts, frame, journal)?),
+            None,
+        ));
+    }
+    let surface = product.triangles()?;
+    let frame = frame::choose(frame, surface, product.extent(), journal)?;
+    Ok((Box::new(GradientMap::new(surface, frame)?), Some(surface)))
+}
+
+/// Returns the cells of a surface in parts.
+fn cells_of_parts<'a>(
+    product: &SurfaceProduct,
+    parts: &'a TinParts,
+    frame: &FrameOptions,
+    journal: &Journal,
+) -> Result<DemOfParts<'a, CompactTin<Mapped>>> {
+    let chosen = frame::over_extent(frame, product.extent(), product.crs(), journal)?;
+    frame::require_filled(frame, &chosen, &product.extent(), || parts.index().area)?;
+    parts.dem(chosen)
 }
 
 /// Returns an error if options are given that only a TIN has a use for.
@@ -267,6 +337,27 @@ pub(super) fn refuse_options(frame: &FrameOptions, method: Method) -> Result<()>
 
 /// Heights over angles are exaggerated more by mistake only.
 const MOST_EXAGGERATION: f64 = 1000.0;
+
+/// Returns the units of y per unit of z, and those per unit of x, over a frame. Differences of
+/// heights need no lengths.
+fn scale_over(
+    options: &QuantityOptions,
+    crs: Option<&Crs>,
+    frame: &Frame,
+    journal: &Journal,
+) -> [f64; 2] {
+    let light = LightOptions {
+        z_factor: options.z_factor,
+        ..LightOptions::default()
+    };
+    let Light {
+        z_factor, x_scale, ..
+    } = match options.quantity.has_lengths() {
+        true => light_over(&light, crs, frame, journal),
+        false => Light::default(),
+    };
+    [z_factor, x_scale]
+}
 
 /// Returns the light over a frame. A given factor for heights is that of both axes.
 fn light_over(
@@ -349,27 +440,34 @@ impl<'a> CellProduct<'a> {
         crs: Option<&Crs>,
         journal: &Journal,
     ) -> Result<Self> {
-        let QuantityOptions {
-            quantity, z_factor, ..
-        } = *options;
-        let light = LightOptions {
-            z_factor,
-            ..LightOptions::default()
-        };
-        // Differences of heights need no lengths.
-        let Light {
-            z_factor, x_scale, ..
-        } = match quantity.has_lengths() {
-            true => light_over(&light, crs, &source.frame(), journal),
-            false => Light::default(),
-        };
-        let source = Box::new(QuantityMap::of(source, quantity, z_factor, x_scale)?);
-        Ok(CellProduct {
+        let [z_factor, x_scale] = scale_over(options, crs, &source.frame(), journal);
+        let map = QuantityMap::of(source, options.quantity, z_factor, x_scale)?;
+        Ok(CellProduct::numbers(Box::new(map), journal))
+    }
+
+    /// Returns the slope or the aspect of faces in cells.
+    ///
+    /// # Errors
+    /// If the quantity is not one of faces.
+    pub(crate) fn face_slopes_of(
+        source: Box<dyn GradientSource + 'a>,
+        options: &QuantityOptions,
+        crs: Option<&Crs>,
+        journal: &Journal,
+    ) -> Result<Self> {
+        let [z_factor, x_scale] = scale_over(options, crs, &source.frame(), journal);
+        let map = FaceSlopes::of(source, options.quantity, z_factor, x_scale)?;
+        Ok(CellProduct::numbers(Box::new(map), journal))
+    }
+
+    /// Returns numbers in cells.
+    fn numbers(source: Box<dyn BlockSource + 'a>, journal: &Journal) -> Self {
+        CellProduct {
             source,
             surface: None,
             content: Content::Heights,
             notices: journal.take(),
-        })
+        }
     }
 
     /// Returns the cells of a grid that is in memory, to be written as `cells`.
@@ -440,13 +538,21 @@ impl CellProduct<'_> {
     ///
     /// # Errors
     /// If the file cannot be written, or the run is canceled.
-    pub fn write(&self, target: Destination, context: &Context) -> Result<RasterSummary> {
-        let format = self.content.format();
-        let cells = geotiff::cells_written(self.frame(), format);
+    pub fn write(
+        &self,
+        target: Destination,
+        overviews: Overviews,
+        context: &Context,
+    ) -> Result<RasterSummary> {
+        let options = WriteOptions {
+            overviews,
+            ..self.content.format().into()
+        };
+        let cells = geotiff::cells_written(self.frame(), &options);
         let work = context.start(self.stage(), Size::Items(cells))?;
         let options = WriteOptions {
-            cells: format,
             watch: &|cells| work.add(cells),
+            ..options
         };
         geotiff::write(target, self.source.as_ref(), options)
     }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use crate::crs::Crs;
 use crate::data::{self, Bounds, Frame, Surface};
 use crate::error::{Command, Error, Result, Setting, wording};
+use crate::io::geotiff::Overviews;
 use crate::run::context::Journal;
 use crate::run::context::notice::Notice;
 use crate::run::context::units::{Units, neat, number};
@@ -21,8 +22,8 @@ const MANY_CELLS: f64 = 1e8;
 /// The share of cells with a value below which a large raster is refused as a mistake.
 const MOSTLY_EMPTY: f64 = 0.01;
 
-/// Size and position of a raster. By default cells are 1 unit wide, start at multiples of that, so
-/// that neighboring rasters fit together, and cover the surface.
+/// Size and position of a raster, and its overviews. By default cells are 1 unit wide, start at
+/// multiples of that, so that neighboring rasters fit together, and cover the surface.
 #[derive(Debug, Clone, Default, serde::Serialize, serde::Deserialize)]
 pub struct FrameOptions {
     /// The width of a cell, in the units of the coordinate system; `None` is 1, or an error in
@@ -34,6 +35,9 @@ pub struct FrameOptions {
     pub extent: Option<Bounds>,
     /// A raster whose grid of cells is used, also beyond its edges. The resolution is then ignored.
     pub align_to: Option<PathBuf>,
+    /// Whether a GeoTIFF has overviews.
+    #[serde(default)]
+    pub overviews: Overviews,
 }
 
 impl FrameOptions {

@@ -51,7 +51,12 @@ impl Verb for DemOptions {
         context: &Context,
     ) -> Result<Summary> {
         let cells = cells::dem(surface, self, context)?;
-        Ok(Summary::Heights(write_numbers(&cells, outputs, context)?))
+        Ok(Summary::Heights(write_numbers(
+            &cells,
+            self.frame.overviews,
+            outputs,
+            context,
+        )?))
     }
 
     fn keeps(&self) -> Keeps<'_> {
@@ -65,6 +70,11 @@ impl Verb for DemOptions {
         context: &Context,
     ) -> Result<Summary> {
         let cells = CellProduct::heights_of(tiles.heights(&self.frame, context)?);
-        Ok(Summary::Heights(write_numbers(&cells, outputs, context)?))
+        Ok(Summary::Heights(write_numbers(
+            &cells,
+            self.frame.overviews,
+            outputs,
+            context,
+        )?))
     }
 }

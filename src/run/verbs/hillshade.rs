@@ -9,7 +9,6 @@ use super::targets::{Outputs, Target};
 use super::{Keeps, Summary, Tiles, Verb};
 use crate::error::{Result, Setting};
 use crate::io::formats::Product;
-use crate::io::geotiff::COPIES_ON_DISK;
 use crate::run::context::{Context, Journal};
 use crate::run::products::cells::{self, CellProduct, HillshadeOptions, LightOptions};
 use crate::run::products::surface::{self, SurfaceProduct, SurfaceRequest};
@@ -74,7 +73,7 @@ impl Verb for HillshadeOptions {
         context: &Context,
     ) -> Result<Summary> {
         let cells = cells::hillshade(surface, self, context)?;
-        write_drawn(&cells, outputs, cell_bytes, context)
+        write_drawn(&cells, self.frame.overviews, outputs, cell_bytes, context)
     }
 
     fn keeps(&self) -> Keeps<'_> {
@@ -91,16 +90,12 @@ impl Verb for HillshadeOptions {
         let crs = heights.crs().cloned();
         let journal = Journal::new(context);
         let cells = CellProduct::shades_of(heights, &self.light, crs.as_ref(), &journal)?;
-        write_drawn(&cells, outputs, cell_bytes, context)
+        write_drawn(&cells, self.frame.overviews, outputs, cell_bytes, context)
     }
 }
 
-/// Returns the bytes of a cell before compression, and how many times they are on the disk.
-fn cell_bytes(target: &Target) -> (u64, f64) {
+/// Returns the bytes of a cell before compression.
+fn cell_bytes(target: &Target) -> u64 {
     // A picture has gray and alpha.
-    if is_picture(target) {
-        (2, 1.0)
-    } else {
-        (1, COPIES_ON_DISK)
-    }
+    if is_picture(target) { 2 } else { 1 }
 }

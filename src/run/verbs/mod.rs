@@ -33,7 +33,7 @@ use crate::run::products::contour::ContourOptions;
 use crate::run::products::frame::FrameOptions;
 use crate::run::products::surface::{self, SurfaceProduct, SurfaceRequest};
 use crate::run::sources::tin_parts::WrittenParts;
-use crate::terrain::{Method, Quantity};
+use crate::terrain::{GradientSource, Method, Quantity};
 
 /// A surface, and what is written of it.
 #[derive(Debug, Clone)]
@@ -155,6 +155,8 @@ pub enum TileUse {
 pub enum Keeps<'a> {
     /// The heights at the centers of cells.
     Heights(&'a FrameOptions),
+    /// The gradients of the faces at the centers of cells.
+    Gradients(&'a FrameOptions),
     /// Parts of contours.
     Contours(&'a ContourOptions),
     /// The triangles, in the triangulation of the task.
@@ -169,6 +171,13 @@ pub trait Tiles {
     /// If no triangle is left, if tasks have kept something else or their files are damaged; and
     /// those of choosing the frame.
     fn heights(&self, frame: &FrameOptions, context: &Context) -> Result<Box<dyn BlockSource>>;
+
+    /// Returns the gradients of the faces at the centers of cells.
+    ///
+    /// # Errors
+    /// Those of [`heights`](Self::heights).
+    fn gradients(&self, frame: &FrameOptions, context: &Context)
+    -> Result<Box<dyn GradientSource>>;
 
     /// Joins the parts of contours, level by level, and writes them.
     ///

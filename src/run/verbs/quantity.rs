@@ -23,6 +23,10 @@ impl Verb for QuantityOptions {
         Product::Heights
     }
 
+    fn check(&self) -> Result<()> {
+        QuantityOptions::check(self)
+    }
+
     fn list(&self, add: &mut dyn FnMut(Setting, &dyn Debug)) {
         let QuantityOptions {
             quantity,
@@ -66,12 +70,15 @@ impl Verb for QuantityOptions {
         context: &Context,
     ) -> Result<Summary> {
         let cells = cells::quantity(surface, self, context)?;
-        let written = write_numbers(&cells, outputs, context)?;
+        let written = write_numbers(&cells, self.frame.overviews, outputs, context)?;
         Ok(Summary::Quantity(self.quantity, written))
     }
 
     fn keeps(&self) -> Keeps<'_> {
-        Keeps::Heights(&self.frame)
+        match self.is_of_faces() {
+            true => Keeps::Gradients(&self.frame),
+            false => Keeps::Heights(&self.frame),
+        }
     }
 
     fn write_tiles(
@@ -80,11 +87,17 @@ impl Verb for QuantityOptions {
         outputs: &Outputs,
         context: &Context,
     ) -> Result<Summary> {
-        let heights = tiles.heights(&self.frame, context)?;
-        let crs = heights.crs().cloned();
         let journal = Journal::new(context);
-        let cells = CellProduct::quantity_of(heights, self, crs.as_ref(), &journal)?;
-        let written = write_numbers(&cells, outputs, context)?;
+        let cells = if self.is_of_faces() {
+            let gradients = tiles.gradients(&self.frame, context)?;
+            let crs = gradients.crs().cloned();
+            CellProduct::face_slopes_of(gradients, self, crs.as_ref(), &journal)?
+        } else {
+            let heights = tiles.heights(&self.frame, context)?;
+            let crs = heights.crs().cloned();
+            CellProduct::quantity_of(heights, self, crs.as_ref(), &journal)?
+        };
+        let written = write_numbers(&cells, self.frame.overviews, outputs, context)?;
         Ok(Summary::Quantity(self.quantity, written))
     }
 }

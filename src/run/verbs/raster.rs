@@ -7,7 +7,7 @@ use super::targets::{Outputs, Target};
 use crate::data::BlockSource;
 use crate::error::{Error, Result, Setting, wording};
 use crate::io::formats::{self, Content, Product};
-use crate::io::geotiff::{COPIES_ON_DISK, RasterSummary};
+use crate::io::geotiff::{Overviews, RasterSummary};
 use crate::run::context::Context;
 use crate::run::context::event::Event;
 use crate::run::context::notice::Notice;
@@ -25,12 +25,14 @@ pub(super) fn list_frame(
         resolution,
         extent,
         align_to,
+        overviews,
     }: &FrameOptions,
     add: &mut dyn FnMut(Setting, &dyn Debug),
 ) {
     add(Setting::Resolution, resolution);
     add(Setting::Extent, &extent.map(in_plan::corners));
     add(Setting::AlignTo, align_to);
+    add(Setting::Overviews, overviews);
 }
 
 /// Returns true if a target of shades or colors is a picture, and not a raster.
@@ -39,24 +41,30 @@ pub(super) fn is_picture(target: &Target) -> bool {
         .is_some_and(|format| format.content == Content::Picture)
 }
 
-/// Writes shades or colors to all targets, as pictures or rasters. `cell_bytes` is that of
-/// [`announce`].
+/// Writes shades or colors to all targets, as pictures or rasters. `cell_bytes` returns the bytes of
+/// a cell of a target before compression.
 ///
 /// # Errors
 /// Those of [`announce`]; and if a file cannot be written, or the run is canceled.
 pub(super) fn write_drawn(
     cells: &CellProduct,
+    overviews: Overviews,
     outputs: &Outputs,
-    cell_bytes: impl Fn(&Target) -> (u64, f64),
+    cell_bytes: impl Fn(&Target) -> u64,
     context: &Context,
 ) -> Result<Summary> {
-    announce(cells, outputs, cell_bytes, context)?;
+    let copies = |target: &Target| match is_picture(target) {
+        true => 1.0,
+        false => overviews.copies_on_disk(),
+    };
+    let on_disk = |target: &Target| (cell_bytes(target), copies(target));
+    announce(cells, outputs, on_disk, context)?;
     for target in &outputs.targets {
         let destination = target.within(&outputs.set);
         if is_picture(target) {
             cells.write_picture(destination, context)?;
         } else {
-            cells.write(destination, context)?;
+            cells.write(destination, overviews, context)?;
         }
     }
     Ok(Summary::Shades)
@@ -69,17 +77,18 @@ pub(super) fn write_drawn(
 /// Those of [`announce`]; and if a file cannot be written, or the run is canceled.
 pub(super) fn write_numbers(
     cells: &CellProduct,
+    overviews: Overviews,
     outputs: &Outputs,
     context: &Context,
 ) -> Result<RasterSummary> {
-    announce(cells, outputs, |_| (4, COPIES_ON_DISK), context)?;
+    announce(cells, outputs, |_| (4, overviews.copies_on_disk()), context)?;
     let mut written = RasterSummary {
         min: f64::NAN,
         max: f64::NAN,
         valid: 0,
     };
     for target in &outputs.targets {
-        written = cells.write(target.within(&outputs.set), context)?;
+        written = cells.write(target.within(&outputs.set), overviews, context)?;
     }
     Ok(written)
 }

@@ -4,11 +4,12 @@ use std::fmt::Debug;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::raster::{is_picture, list_frame, write_drawn};
+use super::raster::{list_frame, write_drawn};
 use super::targets::{Outputs, Target};
 use super::{Keeps, Summary, Tiles, Verb};
 use crate::error::{Result, Setting};
 use crate::io::formats::Product;
+use crate::io::geotiff::Overviews;
 use crate::run::context::{Context, Journal};
 use crate::run::products::relief::{self, ColorReliefOptions};
 use crate::run::products::surface::{self, SurfaceProduct, SurfaceRequest};
@@ -62,7 +63,7 @@ impl Verb for ColorReliefOptions {
         context: &Context,
     ) -> Result<Summary> {
         let cells = relief::color_relief(surface, self, context)?;
-        write_drawn(&cells, outputs, cell_bytes, context)
+        write_drawn(&cells, Overviews::None, outputs, cell_bytes, context)
     }
 
     fn keeps(&self) -> Keeps<'_> {
@@ -77,12 +78,11 @@ impl Verb for ColorReliefOptions {
     ) -> Result<Summary> {
         let heights = tiles.heights(&self.frame, context)?;
         let cells = relief::colors_of(heights, self, &Journal::new(context))?;
-        write_drawn(&cells, outputs, cell_bytes, context)
+        write_drawn(&cells, Overviews::None, outputs, cell_bytes, context)
     }
 }
 
-/// Returns the bytes of a cell before compression, and how many times they are on the disk.
-fn cell_bytes(target: &Target) -> (u64, f64) {
-    // A GeoTIFF without overviews is joined from a scratch file.
-    (4, if is_picture(target) { 1.0 } else { 2.0 })
+/// Returns the bytes of a cell before compression.
+fn cell_bytes(_target: &Target) -> u64 {
+    4
 }

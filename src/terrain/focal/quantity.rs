@@ -2,7 +2,7 @@
 
 use super::{Focal, Neighbors, Rule};
 use crate::data::BlockSource;
-use crate::error::Result;
+use crate::error::{Error, Result, Setting, wording};
 
 /// What is computed of the surface around each cell of a raster.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -42,6 +42,16 @@ impl Quantity {
         }
     }
 
+    /// Returns how the gradient is computed that the quantity follows from alone, if it does.
+    pub fn gradient(self) -> Option<Gradient> {
+        match self {
+            Quantity::SlopeDegrees(by) | Quantity::SlopePercent(by) | Quantity::Aspect(by) => {
+                Some(by)
+            }
+            _ => None,
+        }
+    }
+
     /// Returns true if values depend on the ratio of heights to lengths.
     pub fn has_lengths(self) -> bool {
         match self {
@@ -63,6 +73,9 @@ pub enum Gradient {
     Horn,
     /// From the four cells beside: Zevenbergen and Thorne (1987). For smooth surfaces.
     ZevenbergenThorne,
+    /// That of the face which has the center of the cell: of a surface of triangles, see
+    /// [`FaceSlopes`](crate::terrain::FaceSlopes).
+    Faces,
 }
 
 /// How ruggedness is computed from the differences of the eight cells around and the one between.
@@ -96,8 +109,19 @@ impl<S: BlockSource> QuantityMap<S> {
     /// [`Light`](super::Light). Roughness, ruggedness and position do not depend on them.
     ///
     /// # Errors
-    /// If the frame of the source has no inverse.
+    /// If the frame of the source has no inverse, or the quantity is one of [faces](Gradient::Faces).
     pub fn of(source: S, quantity: Quantity, z_factor: f64, x_scale: f64) -> Result<Self> {
+        if quantity.gradient() == Some(Gradient::Faces) {
+            return Err(Error::usage(wording![
+                Setting::Formula,
+                " is that of faces, and a raster has none"
+            ])
+            .cure(wording![
+                "choose another ",
+                Setting::Formula,
+                ", or pass points, a .tin or a .ply"
+            ]));
+        }
         Focal::of_rule(
             source,
             Scaled {
@@ -157,6 +181,8 @@ impl Scaled {
                 let [per_column, per_row] = [e - w, s - n].map(|d| d / 2.0 * self.z_factor);
                 around.to_pixels.gradient(per_column, per_row)
             }
+            // Refused by `of`.
+            Gradient::Faces => [f64::NAN; 2],
         };
         [p / self.x_scale, q]
     }

@@ -1,4 +1,4 @@
-//! Heights of triangles that come one by one, in blocks of cells.
+//! Heights or gradients of triangles that come one by one, in blocks of cells.
 
 use std::ops::Range;
 
@@ -6,21 +6,23 @@ use rustc_hash::FxHashMap;
 
 use super::bins::bins_of;
 use super::placement::{Centers, Placement};
-use super::scan::{Heights, Scan};
+use super::scan::{Ink, Scan};
+use super::value::CellValue;
 use crate::data::{Frame, Window};
 use crate::error::Result;
 
-/// Heights at the centers of the cells of a frame, drawn triangle by triangle.
+/// Heights or gradients at the centers of the cells of a frame, drawn triangle by triangle.
 ///
 /// A cell has the height that [`Dem`](super::Dem) gives it for a surface with the triangle, bit for
-/// bit. So parts of a surface may be drawn on canvases of their own, in any order: where two have
-/// a height for a cell, it is the same. Memory is needed for blocks of cells that triangles meet,
-/// 16 kB each, whatever the size of the frame.
+/// bit, or the gradient that [`GradientMap`](super::GradientMap) gives it. So parts of a surface
+/// may be drawn on canvases of their own, in any order: where two have a height for a cell, it is
+/// the same, and of two gradients [one counts](CellValue::or). Memory is needed for blocks of cells
+/// that triangles meet, 16 kB each for heights, whatever the size of the frame.
 #[derive(Debug)]
-pub struct Canvas {
+pub struct Canvas<V = f32> {
     frame: Frame,
     placement: Placement,
-    blocks: Vec<Block>,
+    blocks: Vec<Block<V>>,
     /// The index of each block, by its row and column.
     index: FxHashMap<[usize; 2], usize>,
     /// The block that was drawn into last: the next triangle is likely to meet it, too.
@@ -28,27 +30,29 @@ pub struct Canvas {
 }
 
 #[derive(Debug)]
-struct Block {
+struct Block<V> {
     at: [usize; 2],
     columns: Centers,
     rows: Centers,
-    cells: Vec<f32>,
+    cells: Vec<V>,
 }
 
-/// A block of cells with heights.
+/// A block of cells with values.
 #[derive(Debug, Clone, PartialEq)]
-pub struct CanvasBlock {
+pub struct CanvasBlock<V = f32> {
     /// Its cells in the frame.
     pub window: Window,
-    /// The heights of the cells, row by row; NaN where no triangle was drawn.
-    pub heights: Vec<f32>,
+    /// The values of the cells, row by row; NaN where no triangle was drawn.
+    pub values: Vec<V>,
 }
 
 impl Canvas {
     /// The number of cells along a side of a block.
     pub const SIDE: usize = 64;
+}
 
-    /// Creates a canvas without heights.
+impl<V: CellValue> Canvas<V> {
+    /// Creates a canvas without values.
     ///
     /// # Errors
     /// Those of [`Frame::checked`].
@@ -89,7 +93,7 @@ impl Canvas {
             .placement
             .rows
             .cells(ys[0].min(ys[1]).min(ys[2]), ys[0].max(ys[1]).max(ys[2]));
-        cells.start / Self::SIDE..cells.end.div_ceil(Self::SIDE)
+        cells.start / Canvas::SIDE..cells.end.div_ceil(Canvas::SIDE)
     }
 
     /// Draws what a triangle covers of some rows of blocks.
@@ -101,8 +105,8 @@ impl Canvas {
             index,
             recent,
         } = self;
-        let corners = corners.map(|p| placement.to_plane(p));
-        bins_of(&corners, placement, Self::SIDE, |row, column| {
+        let placed = corners.map(|p| placement.to_plane(p));
+        bins_of(&placed, placement, Canvas::SIDE, |row, column| {
             if !block_rows.contains(&row) {
                 return;
             }
@@ -120,29 +124,31 @@ impl Canvas {
                 ..
             } = &mut blocks[*recent];
             let (of_rows, of_columns) = (0..rows.values().len(), 0..columns.values().len());
-            Scan { columns, rows }.draw(corners, &of_rows, &of_columns, &mut Heights(cells));
+            let mut ink = V::ink(cells);
+            ink.of_face(0, &corners);
+            Scan { columns, rows }.draw(placed, &of_rows, &of_columns, &mut ink);
         });
     }
 
-    /// Removes the blocks that have a height, by rows and then by columns; the canvas is empty
+    /// Removes the blocks that have a value, by rows and then by columns; the canvas is empty
     /// afterwards.
-    pub fn take_blocks(&mut self) -> Vec<CanvasBlock> {
+    pub fn take_blocks(&mut self) -> Vec<CanvasBlock<V>> {
         self.index.clear();
         let mut blocks = std::mem::take(&mut self.blocks);
         blocks.sort_unstable_by_key(|block| block.at);
-        let has_height = |block: &Block| block.cells.iter().any(|height| !height.is_nan());
+        let has_value = |block: &Block<V>| block.cells.iter().any(CellValue::is_some);
         let window_of = |at| window(at, &self.frame);
-        let taken = blocks.into_iter().filter(has_height);
+        let taken = blocks.into_iter().filter(has_value);
         taken
             .map(|block| CanvasBlock {
                 window: window_of(block.at),
-                heights: block.cells,
+                values: block.cells,
             })
             .collect()
     }
 }
 
-impl Block {
+impl<V: CellValue> Block<V> {
     fn new(at: [usize; 2], frame: &Frame, placement: &Placement) -> Self {
         let Window {
             column,
@@ -154,7 +160,7 @@ impl Block {
             at,
             columns: Centers::new(placement.columns, column, width),
             rows: Centers::new(placement.rows, row, height),
-            cells: vec![f32::NAN; width * height],
+            cells: vec![V::NONE; width * height],
         }
     }
 }

@@ -67,17 +67,17 @@ impl Drawing {
                     face: 0,
                 };
                 for &(face, corners) in &*triangles {
-                    let corners = corners.map(|p| placement.to_plane(p));
-                    let Some([rows, columns]) = cells_of(&corners, placement) else {
+                    let placed = corners.map(|p| placement.to_plane(p));
+                    let Some([rows, columns]) = cells_of(&placed, placement) else {
                         continue;
                     };
                     // PERF: every other face with one center in its box does not contain it.
                     let is_one = rows.len() == 1 && columns.len() == 1;
-                    if is_one && scan.misses(&corners, rows.start, columns.start) {
+                    if is_one && scan.misses(&placed, rows.start, columns.start) {
                         continue;
                     }
-                    ink.of_face(face);
-                    scan.draw(corners, &rows, &columns, &mut ink);
+                    ink.of_face(face, &corners);
+                    scan.draw(placed, &rows, &columns, &mut ink);
                 }
             });
         Some(Drawing { width, cells })
@@ -128,7 +128,7 @@ impl Shared<'_> {
 }
 
 impl Ink for Shared<'_> {
-    fn of_face(&mut self, face: u32) {
+    fn of_face(&mut self, face: u32, _corners: &[[f64; 3]; 3]) {
         self.face = face;
     }
 

@@ -2,16 +2,21 @@ mod bins;
 mod canvas;
 mod drawing;
 mod face_index;
+mod gradients;
 mod of_parts;
 mod placement;
 mod scan;
+mod value;
 
 pub use canvas::{Canvas, CanvasBlock};
 use drawing::Drawing;
 use face_index::FaceIndex;
+pub use gradients::{GradientMap, GradientSource};
 pub use of_parts::DemOfParts;
 use placement::{Centers, Placement};
-use scan::{Heights, Ink, NO_FACE, Numbers, Scan};
+use scan::{Ink, NO_FACE, Numbers, Scan};
+pub use value::CellValue;
+use value::Heights;
 
 use super::interpolate::{Interpolant, Method, QueryBuffers};
 use crate::crs::Crs;
@@ -162,9 +167,8 @@ fn draw<S: Surface + ?Sized>(
             let Some(corners) = surface.triangle(face) else {
                 continue;
             };
-            let corners = corners.map(|p| placement.to_plane(p));
-            ink.of_face(face);
-            scan.draw(corners, &rows, &columns, ink);
+            ink.of_face(face, &corners);
+            scan.draw(corners.map(|p| placement.to_plane(p)), &rows, &columns, ink);
         }
     }
 }

@@ -1,10 +1,12 @@
-//! The heights of a surface in parts, which are opened where they are needed.
+//! The heights or gradients of a surface in parts, which are opened where they are needed.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
+use super::draw;
 use super::face_index::FaceIndex;
+use super::gradients::GradientSource;
 use super::placement::Placement;
-use super::{Heights, draw};
+use super::value::CellValue;
 use crate::crs::Crs;
 use crate::data::{BlockSource, Bounds, Frame, Surface, Window};
 use crate::error::Result;
@@ -12,8 +14,8 @@ use crate::error::Result;
 /// Parts that stay open, the last ones that were used.
 const MOST_OPEN: usize = 32;
 
-/// A raster of the heights of a surface in parts: that of [`Dem`](super::Dem) for the whole, bit
-/// for bit.
+/// A raster of the heights of a surface in parts, or of the gradients of its faces: that of
+/// [`Dem`](super::Dem) or [`GradientMap`](super::GradientMap) for the whole, bit for bit.
 ///
 /// Memory is needed for the parts that a few windows meet.
 pub struct DemOfParts<'a, S> {
@@ -134,8 +136,28 @@ impl<S: Surface + Send> BlockSource for DemOfParts<'_, S> {
     }
 
     fn fill(&self, window: Window, out: &mut [f32]) -> Result<()> {
+        self.values(window, out)
+    }
+}
+
+impl<S: Surface + Send> GradientSource for DemOfParts<'_, S> {
+    fn frame(&self) -> Frame {
+        self.frame
+    }
+
+    fn crs(&self) -> Option<&Crs> {
+        self.crs.as_ref()
+    }
+
+    fn gradients(&self, window: Window, out: &mut [[f64; 2]]) -> Result<()> {
+        self.values(window, out)
+    }
+}
+
+impl<S: Surface + Send> DemOfParts<'_, S> {
+    fn values<V: CellValue>(&self, window: Window, out: &mut [V]) -> Result<()> {
         self.frame.check_window(window, out.len())?;
-        out.fill(f32::NAN);
+        out.fill(V::NONE);
         let meet = |of_part: &Window| {
             of_part.column < window.column + window.width
                 && window.column < of_part.column + of_part.width
@@ -152,7 +174,7 @@ impl<S: Surface + Send> BlockSource for DemOfParts<'_, S> {
                 &opened.index,
                 &self.placement,
                 window,
-                &mut Heights(out),
+                &mut V::ink(out),
             );
             opened.surface.ensure_intact()?;
         }

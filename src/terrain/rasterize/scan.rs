@@ -27,9 +27,9 @@ pub(super) struct Scan<'a> {
 
 /// What faces are drawn with. Cells are numbered row by row, as many columns and rows as there are
 /// centers.
-pub(super) trait Ink {
-    /// Called before a face is drawn.
-    fn of_face(&mut self, _face: u32) {}
+pub trait Ink {
+    /// Called before a face is drawn, with its corners as the surface has them.
+    fn of_face(&mut self, _face: u32, _corners: &[[f64; 3]; 3]) {}
 
     /// Writes one cell, given its height.
     fn cell(&mut self, cell: usize, height: f64);
@@ -37,24 +37,6 @@ pub(super) trait Ink {
     /// Writes cells next to each other from `start` on, given their x and the x and height of both
     /// ends of the segment in which the row cuts the face.
     fn row(&mut self, start: usize, centers: &[f64], ends: [(f64, f64); 2]);
-}
-
-/// Writes heights.
-pub(super) struct Heights<'a>(pub(super) &'a mut [f32]);
-
-impl Ink for Heights<'_> {
-    #[inline]
-    fn cell(&mut self, cell: usize, height: f64) {
-        self.0[cell] = height as f32;
-    }
-
-    #[inline(always)]
-    fn row(&mut self, start: usize, centers: &[f64], ends: [(f64, f64); 2]) {
-        let cells = &mut self.0[start..start + centers.len()];
-        for (cell, height) in cells.iter_mut().zip(heights_along(centers, ends)) {
-            *cell = height;
-        }
-    }
 }
 
 /// Returns the height at each x of a segment with these ends.
@@ -98,7 +80,7 @@ pub(super) struct Numbers<'a> {
 }
 
 impl Ink for Numbers<'_> {
-    fn of_face(&mut self, face: u32) {
+    fn of_face(&mut self, face: u32, _corners: &[[f64; 3]; 3]) {
         self.face = face;
     }
 

@@ -9,12 +9,11 @@ use rayon::prelude::*;
 pub(crate) use self::curve::along_curve;
 use super::admitted::searched;
 use super::boxes::{Boxes, LocatedFace};
+use super::face_gradient;
 use super::interpolate::{Interpolant, Method, QueryBuffers};
-use super::linear;
 use super::rasterize::height_at;
 use crate::data::Surface;
 use crate::error::Result;
-use crate::triangulation::num::unsigned_zero;
 
 /// Positions that a thread takes at a time.
 const BATCH: usize = 1 << 12;
@@ -48,9 +47,7 @@ impl Sample {
     ///
     /// `z_factor` are the units of y per unit of z, `x_scale` those per unit of x.
     pub fn slope_and_aspect(&self, z_factor: f64, x_scale: f64) -> [f64; 2] {
-        let [x, y] = self.gradient;
-        let rise = [x * z_factor / x_scale, y * z_factor];
-        [rise[0].hypot(rise[1]), super::focal::direction(rise)]
+        face_gradient::slope_and_aspect(self.gradient, z_factor, x_scale)
     }
 }
 
@@ -188,14 +185,14 @@ impl<'a, S: Surface + ?Sized> Sampler<'a, S> {
             let Some(height) = height_at(corners, q) else {
                 continue;
             };
-            let gradient = gradient(corners);
+            let gradient = face_gradient::of_face(corners);
             found = Some(match found {
                 None => (face, Sample { height, gradient }),
                 Some((other, sample)) => {
                     // Only faces that overlap have other heights; of these the last one counts, as
                     // in a raster.
                     let height = if other < face { height } else { sample.height };
-                    let gradient = steeper(gradient, sample.gradient);
+                    let gradient = face_gradient::steeper(gradient, sample.gradient);
                     (other.max(face), Sample { height, gradient })
                 }
             });
@@ -219,26 +216,4 @@ impl<'a, S: Surface + ?Sized> Sampler<'a, S> {
         let tree = Boxes::new(LocatedFace::all(self.surface).collect());
         self.faces.get_or_init(|| tree)
     }
-}
-
-/// Returns the rise per unit of x and of y on a triangle, whatever its first corner is.
-fn gradient(mut corners: [[f64; 3]; 3]) -> [f64; 2] {
-    corners.sort_unstable_by(|p, q| {
-        (p[0], p[1])
-            .partial_cmp(&(q[0], q[1]))
-            .unwrap_or(std::cmp::Ordering::Equal)
-    });
-    // A level triangle has 0, not -0.0.
-    linear::gradient(corners).map(unsigned_zero)
-}
-
-/// Returns the steeper of two gradients; of two that are equally steep, the smaller one. One that
-/// is not finite, of a triangle too thin for its area, does not count.
-fn steeper(one: [f64; 2], other: [f64; 2]) -> [f64; 2] {
-    let square = |[x, y]: [f64; 2]| x * x + y * y;
-    let key = |gradient: [f64; 2]| {
-        let steepness = Some(square(gradient)).filter(|square| square.is_finite());
-        (-steepness.unwrap_or(-1.0), gradient[0], gradient[1])
-    };
-    if key(one) < key(other) { one } else { other }
 }

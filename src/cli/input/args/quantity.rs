@@ -47,6 +47,8 @@ pub(crate) enum GradientArg {
     /// The four cells beside: Zevenbergen and Thorne (1987), for smooth surfaces
     #[value(alias = "ZevenbergenThorne")]
     ZevenbergenThorne,
+    /// None: the triangle that has the center of the cell, of points, a TIN or a mesh
+    Faces,
 }
 
 impl From<GradientArg> for Gradient {
@@ -54,6 +56,7 @@ impl From<GradientArg> for Gradient {
         match arg {
             GradientArg::Horn => Gradient::Horn,
             GradientArg::ZevenbergenThorne => Gradient::ZevenbergenThorne,
+            GradientArg::Faces => Gradient::Faces,
         }
     }
 }
@@ -61,12 +64,14 @@ impl From<GradientArg> for Gradient {
 /// Compute the slope in cells, in degrees or percent
 ///
 /// From the 3 x 3 cells around each cell, as gdaldem does. A TIN is drawn as a DEM first; a DEM
-/// keeps its cells. At the edge of the data the surface is extended linearly.
+/// keeps its cells. At the edge of the data the surface is extended linearly. With --formula faces,
+/// each cell has the slope of the triangle at its center.
 #[derive(Debug, Clone, Args)]
 #[command(after_long_help = "\
 Example:
   breakline slope dem.tif -o slope.tif
-  breakline slope tiles/*.laz --resolution 1 --percent -o slope.tif")]
+  breakline slope tiles/*.laz --resolution 1 --percent -o slope.tif
+  breakline slope design.tin --resolution 0.5 --formula faces -o slope.tif")]
 pub(crate) struct SlopeArgs {
     #[command(flatten)]
     pub(crate) common: QuantityArgs,

@@ -9,6 +9,7 @@ use super::reading::ReadArgs;
 use super::surface::{OnCrossingArg, SurfaceArgs};
 use super::systems::SystemArgs;
 use super::tiles::TileArgs;
+use crate::io::geotiff::Overviews;
 use crate::run::{Alpha, Arithmetic};
 use crate::terrain::{CellPoint, Method, Shading};
 
@@ -53,6 +54,32 @@ pub(crate) struct FrameArgs {
     /// `--te`.
     #[arg(long, value_name = "RASTER", conflicts_with = "resolution")]
     pub(crate) align_to: Option<PathBuf>,
+
+    /// Smaller images in a GeoTIFF, from which programs draw it at once
+    ///
+    /// Without them a large raster is written sooner, and is a quarter smaller. Colors never have
+    /// them.
+    #[arg(long, value_enum, value_name = "WHICH", default_value_t)]
+    pub(crate) overviews: OverviewsArg,
+}
+
+/// Which overviews a raster has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub(crate) enum OverviewsArg {
+    /// Each half as large as the one before, down to 512 columns and rows
+    #[default]
+    Auto,
+    /// No smaller images
+    None,
+}
+
+impl From<OverviewsArg> for Overviews {
+    fn from(arg: OverviewsArg) -> Self {
+        match arg {
+            OverviewsArg::Auto => Overviews::Auto,
+            OverviewsArg::None => Overviews::None,
+        }
+    }
 }
 
 /// The cells in which a TIN is drawn, and its heights there. A DEM keeps its cells.

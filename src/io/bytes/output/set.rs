@@ -177,6 +177,14 @@ impl<'a> Destination<'a> {
         self.create_beside(self.path)
     }
 
+    /// Opens the output, as [`Output::create_seekable`] does.
+    ///
+    /// # Errors
+    /// As [`Output::create`].
+    pub fn create_seekable(self) -> Result<Output> {
+        self.create_seekable_beside(self.path)
+    }
+
     /// Opens another output of the same set.
     ///
     /// # Errors

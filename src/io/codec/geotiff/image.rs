@@ -95,13 +95,19 @@ impl Tiling {
 #[derive(Debug)]
 pub(super) struct Image {
     file: File,
+    pub(super) packed: Packed,
+}
+
+/// The tiles of an image, and where they are in their file.
+#[derive(Debug)]
+pub(super) struct Packed {
     tiling: Tiling,
     /// For each tile, its position in the file and its length; 0 if nothing is stored of its cells.
     starts: Vec<u64>,
     lengths: Vec<u32>,
     /// Where the tiles begin, and where they end.
     tiles: Range<u64>,
-    pub(super) summary: RasterSummary,
+    summary: RasterSummary,
 }
 
 impl Image {
@@ -113,9 +119,45 @@ impl Image {
         cells: CellFormat,
         watch: Watch,
     ) -> Result<Self> {
+        let file = target.scratch()?;
+        // Overviews are computed from the tiles: these are read as those of any other file.
+        let mut out = BufWriter::with_capacity(1 << 18, file.try_clone()?);
+        let packed = Packed::write(&mut out, source, cells, Offsets::Bits64, watch)?;
+        out.flush()?;
+        Ok(Image { file, packed })
+    }
+
+    /// Returns the cells as they will be read.
+    pub(super) fn reader(&self, target: &Destination) -> Result<GeoTiffReader> {
+        read::of_file(self.file.try_clone()?, target.path())
+    }
+
+    /// Appends all tiles to another file, some megabytes between two calls of `watch`.
+    pub(super) fn copy_to(&mut self, out: &mut impl Write, watch: Watch) -> Result<()> {
+        self.file.seek(SeekFrom::Start(self.packed.tiles.start))?;
+        let mut left = self.packed.byte_count();
+        while left > 0 {
+            watch(0)?;
+            let part = left.min(COPIED_AT_ONCE);
+            std::io::copy(&mut (&self.file).take(part), out)?;
+            left -= part;
+        }
+        Ok(())
+    }
+}
+
+impl Packed {
+    /// Writes a GeoTIFF of one image: computes and packs all tiles, on all cores, and puts the
+    /// header before them, which is known last. `watch` gets the cells of each tile.
+    pub(super) fn write(
+        out: &mut (impl Write + Seek + Send),
+        source: &dyn BlockSource,
+        cells: CellFormat,
+        offsets: Offsets,
+        watch: Watch,
+    ) -> Result<Self> {
         let tiling = Tiling::new(source.frame())?;
-        let mut image = Image {
-            file: target.scratch()?,
+        let mut image = Packed {
             tiling,
             starts: vec![0; tiling.count],
             lengths: vec![0; tiling.count],
@@ -126,16 +168,11 @@ impl Image {
                 valid: 0,
             },
         };
-        // Overviews are computed from the tiles: these are read as those of any other file.
-        let head = |image: &Image| {
-            directory::header(
-                Offsets::Bits64,
-                &[image.tags(source, cells, image.tiles.start)],
-            )
+        let head = |image: &Packed| {
+            directory::header(offsets, &[image.tags(source, cells, image.tiles.start)])
         };
         let first = head(&image).len() as u64;
         image.tiles = first..first;
-        let mut out = BufWriter::with_capacity(1 << 18, image.file.try_clone()?);
         out.seek(SeekFrom::Start(first))?;
 
         let pack = |range: Range<usize>| -> Result<Vec<Tile>> {
@@ -158,14 +195,13 @@ impl Image {
             let packed = done + ready.len();
             let next = packed..tiling.count.min(packed + batch);
             let (written, computed) =
-                rayon::join(|| image.append(done, &ready, &mut out), || pack(next));
+                rayon::join(|| image.append(done, &ready, out), || pack(next));
             written?;
             done = packed;
             ready = computed?;
         }
         out.seek(SeekFrom::Start(0))?;
         out.write_all(&head(&image))?;
-        out.flush()?;
         Ok(image)
     }
 
@@ -188,27 +224,22 @@ impl Image {
         Ok(())
     }
 
-    /// Returns the cells as they will be read.
-    pub(super) fn reader(&self, target: &Destination) -> Result<GeoTiffReader> {
-        read::of_file(self.file.try_clone()?, target.path())
+    /// Returns what the cells are.
+    pub(super) fn summary(&self) -> RasterSummary {
+        let RasterSummary { min, max, valid } = self.summary;
+        match valid {
+            0 => RasterSummary {
+                min: f64::NAN,
+                max: f64::NAN,
+                valid,
+            },
+            _ => RasterSummary { min, max, valid },
+        }
     }
 
     /// Returns the bytes of all tiles.
     pub(super) fn byte_count(&self) -> u64 {
         self.tiles.end - self.tiles.start
-    }
-
-    /// Appends all tiles to another file, some megabytes between two calls of `watch`.
-    pub(super) fn copy_to(&mut self, out: &mut impl Write, watch: Watch) -> Result<()> {
-        self.file.seek(SeekFrom::Start(self.tiles.start))?;
-        let mut left = self.byte_count();
-        while left > 0 {
-            watch(0)?;
-            let part = left.min(COPIED_AT_ONCE);
-            std::io::copy(&mut (&self.file).take(part), out)?;
-            left -= part;
-        }
-        Ok(())
     }
 
     /// Returns the tags of the image in a file that has its tiles from byte `first`.

@@ -39,7 +39,7 @@ pub use image::RasterSummary;
 pub use kept::KeptBlocks;
 pub use layout::{SampleKind, SampleType};
 pub use read::{Extremes, GeoTiffInfo, GeoTiffReader, open};
-pub use write::{COPIES_ON_DISK, WriteOptions, cells_written, write};
+pub use write::{Overviews, WriteOptions, cells_written, write};
 
 /// Limit for the cells of one read (4 GiB of values).
 pub const MAX_CELLS: usize = 1 << 29;

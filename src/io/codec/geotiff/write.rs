@@ -2,18 +2,41 @@ use std::io::Write;
 
 use super::cell_format::CellFormat;
 use super::directory::{self, Offsets};
-use super::image::{Image, RasterSummary, Tiling};
+use super::image::{Image, Packed, RasterSummary, Tiling};
 use super::overview::Halved;
 use crate::data::{BlockSource, Frame};
 use crate::error::Result;
 use crate::io::bytes::watch::unwatched;
 use crate::io::{Destination, Output, Watch};
 
+/// Smaller images of a raster in its file, from which programs draw it at once.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+pub enum Overviews {
+    /// As many as a cloud-optimized GeoTIFF has: down to 512 columns and rows.
+    #[default]
+    Auto,
+    /// None: written in less time and a third less space.
+    None,
+}
+
+impl Overviews {
+    /// Returns how many times the cells of a raster are on the disk while it is written: with
+    /// overviews, which add a third, twice.
+    pub fn copies_on_disk(self) -> f64 {
+        match self {
+            Overviews::Auto => 8.0 / 3.0,
+            Overviews::None => 1.0,
+        }
+    }
+}
+
 /// How a raster is written.
 #[derive(Clone, Copy)]
 pub struct WriteOptions<'a> {
     /// What the cells contain.
     pub cells: CellFormat<'a>,
+    /// Whether the raster has overviews.
+    pub overviews: Overviews,
     /// Called with the cells that were computed since the last call, [`cells_written`] in all, from
     /// any thread.
     pub watch: Watch<'a>,
@@ -30,6 +53,7 @@ impl<'a> From<CellFormat<'a>> for WriteOptions<'a> {
     fn from(cells: CellFormat<'a>) -> Self {
         WriteOptions {
             cells,
+            overviews: Overviews::Auto,
             watch: &unwatched,
         }
     }
@@ -39,6 +63,7 @@ impl std::fmt::Debug for WriteOptions<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("WriteOptions")
             .field("cells", &self.cells)
+            .field("overviews", &self.overviews)
             .finish_non_exhaustive()
     }
 }
@@ -51,13 +76,13 @@ const LARGEST_WITHOUT: usize = 512;
 ///
 /// A raster of more than 512 columns or rows has overviews, each with half the columns and rows of
 /// the one before, down to 512; a cell has the mean of those of its four that have a value. Colors
-/// have no overviews.
+/// have no overviews, and other rasters [may have none](Overviews::None).
 ///
 /// All cores compute and compress tiles, a few at a time, which are written in order. Memory stays
 /// at some megabytes whatever the size of the raster, and the bytes do not depend on the number of
 /// threads. Tiles without any value are left out (a sparse file, as with GDAL's SPARSE_OK). The
 /// file is a BigTIFF if it might otherwise exceed 4 GiB. It appears at its target once it is
-/// complete; until then its tiles are on the same disk twice.
+/// complete; with overviews its tiles are on the same disk twice until then.
 ///
 /// # Errors
 /// If the raster has no cells or too many, the source fails, or the file cannot be written; and
@@ -76,7 +101,7 @@ pub fn write<'a>(
             &target,
             source,
             options,
-            offsets_for(source.frame(), options.cells)?,
+            offsets_for(source.frame(), &options)?,
         )
     };
     let path = target.path().to_path_buf();
@@ -92,20 +117,16 @@ pub fn write<'a>(
     Ok(summary)
 }
 
-/// How many times the cells of a raster are on the disk while it is written: with overviews, which
-/// add a third, and twice.
-pub const COPIES_ON_DISK: f64 = 8.0 / 3.0;
-
 /// Returns the number of cells that [`write()`] computes, those of overviews included.
-pub fn cells_written(frame: Frame, cells: CellFormat) -> u64 {
-    levels(frame, cells)
+pub fn cells_written(frame: Frame, options: &WriteOptions) -> u64 {
+    levels(frame, options)
         .map(|Frame { width, height, .. }| (width as u64).saturating_mul(height as u64))
         .fold(0, u64::saturating_add)
 }
 
 /// Returns the frame of a raster, and frames with the sizes of its overviews.
-fn levels(frame: Frame, cells: CellFormat) -> impl Iterator<Item = Frame> {
-    let has_overviews = cells.has_overviews();
+fn levels(frame: Frame, options: &WriteOptions) -> impl Iterator<Item = Frame> + use<> {
+    let has_overviews = options.cells.has_overviews() && options.overviews == Overviews::Auto;
     std::iter::successors(
         Some(frame),
         move |&Frame {
@@ -124,9 +145,9 @@ fn levels(frame: Frame, cells: CellFormat) -> impl Iterator<Item = Frame> {
 }
 
 /// Returns 32-bit offsets if they are certain to suffice for a raster and its overviews.
-fn offsets_for(frame: Frame, cells: CellFormat) -> Result<Offsets> {
-    let most: u64 = levels(frame, cells)
-        .map(|frame| Ok(Tiling::new(frame)?.most_bytes(cells)))
+fn offsets_for(frame: Frame, options: &WriteOptions) -> Result<Offsets> {
+    let most: u64 = levels(frame, options)
+        .map(|frame| Ok(Tiling::new(frame)?.most_bytes(options.cells)))
         .sum::<Result<_>>()?;
     // If the tiles do not exceed 4 GiB, 2 MB is ample for the header.
     Ok(if most + (1 << 21) < 1 << 32 {
@@ -144,17 +165,23 @@ fn write_levels(
     options: WriteOptions<'_>,
     offsets: Offsets,
 ) -> Result<(RasterSummary, Output)> {
-    let WriteOptions { cells, watch } = options;
+    let WriteOptions { cells, watch, .. } = options;
+    if levels(source.frame(), &options).nth(1).is_none() {
+        let mut output = target.create_seekable()?;
+        let packed = Packed::write(&mut output, source, cells, offsets, watch)?;
+        return Ok((packed.summary(), output));
+    }
     let mut output = target.create()?;
     let mut images = vec![Image::pack(target, source, cells, watch)?];
-    for _ in levels(source.frame(), cells).skip(1) {
+    for _ in levels(source.frame(), &options).skip(1) {
         let finer = images[images.len() - 1].reader(target)?;
         images.push(Image::pack(target, &Halved::new(finer), cells, watch)?);
     }
     // The raster itself is the last in the file, and the first in the header.
     let header = |first: u64| {
-        let mut at = first + images.iter().map(Image::byte_count).sum::<u64>();
-        let tags_of = |(level, image): (usize, &Image)| {
+        let packed = || images.iter().map(|image| &image.packed);
+        let mut at = first + packed().map(Packed::byte_count).sum::<u64>();
+        let tags_of = |(level, image): (usize, &Packed)| {
             at -= image.byte_count();
             if level == 0 {
                 image.tags(source, cells, at)
@@ -164,20 +191,16 @@ fn write_levels(
         };
         directory::header(
             offsets,
-            &images.iter().enumerate().map(tags_of).collect::<Vec<_>>(),
+            &packed().enumerate().map(tags_of).collect::<Vec<_>>(),
         )
     };
     let head = header(header(0).len() as u64);
     output.write_all(&head)?;
-    let mut summary = images[0].summary;
     images
         .iter_mut()
         .rev()
         .try_for_each(|image| image.copy_to(&mut output, watch))?;
-    if summary.valid == 0 {
-        (summary.min, summary.max) = (f64::NAN, f64::NAN);
-    }
-    Ok((summary, output))
+    Ok((images[0].packed.summary(), output))
 }
 
 #[cfg(test)]
@@ -275,8 +298,10 @@ mod tests {
 
     #[test]
     fn offsets_are_wide_when_the_file_may_pass_four_gibibytes() {
-        let offsets =
-            |side, cells| offsets_for(Frame::north_up(0.0, 0.0, 1.0, side, side), cells).unwrap();
+        let offsets = |side, cells: CellFormat| {
+            let frame = Frame::north_up(0.0, 0.0, 1.0, side, side);
+            offsets_for(frame, &cells.into()).unwrap()
+        };
         assert_eq!(offsets(28_000, CellFormat::Heights), Offsets::Bits32);
         assert_eq!(offsets(29_000, CellFormat::Heights), Offsets::Bits64);
         assert_eq!(offsets(55_000, CellFormat::Shades), Offsets::Bits32);
@@ -288,7 +313,7 @@ mod tests {
         let sizes = |width, height| -> Vec<[usize; 2]> {
             let all = levels(
                 Frame::north_up(0.0, 0.0, 1.0, width, height),
-                CellFormat::Heights,
+                &WriteOptions::default(),
             );
             all.map(|Frame { width, height, .. }| [width, height])
                 .collect()
@@ -297,8 +322,19 @@ mod tests {
         assert_eq!(sizes(513, 2), [[513, 2], [257, 1]]);
         assert_eq!(sizes(1, 2500), [[1, 2500], [1, 1250], [1, 625], [1, 313]]);
         assert_eq!(
-            cells_written(Frame::north_up(0.0, 0.0, 1.0, 600, 300), CellFormat::Shades),
+            cells_written(
+                Frame::north_up(0.0, 0.0, 1.0, 600, 300),
+                &CellFormat::Shades.into()
+            ),
             600 * 300 + 300 * 150
+        );
+        let without = WriteOptions {
+            overviews: Overviews::None,
+            ..WriteOptions::default()
+        };
+        assert_eq!(
+            cells_written(Frame::north_up(0.0, 0.0, 1.0, 600, 300), &without),
+            600 * 300
         );
     }
 }

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use crate::crs::Crs;
-use crate::data::{BlockSource, Bounds, Frame, SurfaceFacts};
+use crate::data::{Bounds, Frame, SurfaceFacts};
 use crate::error::{Command, Error, Result, wording};
 use crate::io::mapped::{self, Mapped};
 use crate::terrain::{CompactTin, DemOfParts, TinIndex};
@@ -143,15 +143,13 @@ impl TinParts {
         (self.open)(number)
     }
 
-    /// Returns a raster of linear heights.
-    pub(crate) fn dem(&self, frame: Frame) -> Result<Box<dyn BlockSource + '_>> {
+    /// Returns a raster of linear heights, and of the gradients of faces.
+    ///
+    /// # Errors
+    /// Those of [`DemOfParts::new`].
+    pub(crate) fn dem(&self, frame: Frame) -> Result<DemOfParts<'_, CompactTin<Mapped>>> {
         let extents: Vec<Bounds> = self.index.parts.iter().map(|part| part.extent).collect();
-        Ok(Box::new(DemOfParts::new(
-            frame,
-            self.index.crs.clone(),
-            &extents,
-            &*self.open,
-        )?))
+        DemOfParts::new(frame, self.index.crs.clone(), &extents, &*self.open)
     }
 }
 
