@@ -21,9 +21,11 @@ type Row = (
     Option<f64>,
 );
 
-const UNITS: [(&str, VolumeUnit); 2] = [
+const UNITS: [(&str, VolumeUnit); 4] = [
     ("m3", VolumeUnit::CubicMeters),
     ("yd3", VolumeUnit::CubicYards),
+    ("ft3", VolumeUnit::CubicFeet),
+    ("acre-ft", VolumeUnit::AcreFeet),
 ];
 
 /// Returns the volumes between a surface and its base, and their unit. The base is a second

@@ -1,3 +1,5 @@
+use super::named::named;
+
 /// What a record has for an attribute.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub enum Value {
@@ -37,6 +39,13 @@ pub struct Attributes {
 }
 
 impl Attributes {
+    /// Returns the values of the attribute with this name, as written, else in any case, as texts:
+    /// one for each shape.
+    pub(crate) fn texts(&self, name: &str) -> Option<Vec<String>> {
+        let number = named(self.names.iter().map(String::as_str), name)?;
+        Some(self.column(number).map(Value::text).collect())
+    }
+
     /// Returns the values of an attribute, one for each shape.
     pub fn column(&self, number: usize) -> impl Iterator<Item = &Value> {
         let missing = &Value::Missing;

@@ -59,17 +59,13 @@ fn numbered(text: &str) -> Result<Columns, String> {
         .map_while(|part| part.trim().parse().ok())
         .collect();
     let are_all = text.split(',').count() == numbers.len() && !numbers.contains(&0);
+    let is_first = |at: usize| !numbers[..at].contains(&numbers[at]);
+    let are_distinct = (0..numbers.len()).all(is_first);
     match *numbers.as_slice() {
-        [x, y] if are_all && x != y => Ok(Columns {
+        [x, y, ref z @ ..] if are_all && are_distinct && z.len() < 2 => Ok(Columns {
             x,
             y,
-            z: None,
-            class: None,
-        }),
-        [x, y, z] if are_all && x != y && y != z && x != z => Ok(Columns {
-            x,
-            y,
-            z: Some(z),
+            z: z.first().copied(),
             class: None,
         }),
         _ => Err(

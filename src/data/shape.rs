@@ -1,4 +1,5 @@
 use super::Attributes;
+use super::named::named;
 use crate::crs::Crs;
 use crate::error::Wording;
 
@@ -142,12 +143,8 @@ pub struct Layer {
 impl Layer {
     /// Returns the column with this name: as written, else in any case.
     pub fn column(&self, name: &str) -> Option<&Column> {
-        let exact = self.columns.iter().find(|column| column.name == name);
-        exact.or_else(|| {
-            self.columns
-                .iter()
-                .find(|column| column.name.eq_ignore_ascii_case(name))
-        })
+        let names = self.columns.iter().map(|column| column.name.as_str());
+        named(names, name).map(|at| &self.columns[at])
     }
 
     /// Returns the parts of all lines and the rings of all polygons.

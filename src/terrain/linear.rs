@@ -55,7 +55,7 @@ fn along_sliver([a, b, c]: [[f64; 3]; 3], q: [f64; 2]) -> f64 {
 
 /// Returns the position of a point in plan.
 #[inline(always)]
-pub(super) fn plan([x, y, _]: [f64; 3]) -> [f64; 2] {
+pub(super) fn plan<T: Copy>([x, y, _]: [T; 3]) -> [T; 2] {
     [x, y]
 }
 

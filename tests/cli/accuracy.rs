@@ -158,6 +158,17 @@ fn thirty_checkpoints_are_enough_and_layers_are_read() {
     assert_eq!(found["sets"][1]["group"], "11.5");
     assert_eq!(found["points"][0]["record"], 1);
     assert_eq!(found["unit"], "metre");
+    let layer = super::geojson(25832, "Point", "[1, 1, 11.5]").replace("11.5}", "\"oak\"}");
+    std::fs::write(folder.path().join("s.geojson"), layer).unwrap();
+    let run = run_in(
+        &folder,
+        &[&base[..], &["s.geojson", "--json", "--group-by", "z"]].concat(),
+    );
+    let found: Value = serde_json::from_str(&run.stdout).unwrap();
+    assert_eq!(found["sets"][1]["group"], "oak");
+    let words = ["s.geojson", "--group-by", "cover"];
+    run_in(&folder, &[&base[..], &words].concat())
+        .fails(1, &["s.geojson: there is no field cover", "name one of Z"]);
 }
 
 #[test]

@@ -17,6 +17,20 @@ fn extent(folder: &tempfile::TempDir, args: &[&str]) -> (serde_json::Value, serd
 }
 
 #[test]
+fn names_of_arcgis_are_known() {
+    let folder = folder_with(&[(
+        "p.csv",
+        "OBJECTID,POINT_Z,POINT_X,POINT_Y\n1,801.5,688001,5261002\n2,802,688009,5261003\n",
+    )]);
+    let (min, columns) = extent(&folder, &["p.csv"]);
+    assert_eq!(min, serde_json::json!([688_001.0, 5_261_002.0, 801.5]));
+    assert_eq!(
+        columns,
+        serde_json::json!({"x": 3, "y": 4, "z": 2, "class": null})
+    );
+}
+
+#[test]
 fn numbers_of_points_are_not_taken_for_coordinates() {
     let folder = folder_with(&[
         ("p.csv", PNEZD),

@@ -607,3 +607,42 @@ fn a_table_on_stdout_is_alone_there() {
         run_in(&folder, &[&words[..], &[target, "--json"]].concat()).fails(2, &["--json"]);
     }
 }
+
+#[test]
+fn stations_are_written_as_the_step_is() {
+    let folder = folder_with(&[
+        ("a.xyz", SLOPE),
+        ("l.geojson", &geojson(25832, "LineString", "[[0,1],[3,1]]")),
+    ]);
+    let words = [
+        "profile",
+        "a.xyz",
+        "--along",
+        "l.geojson",
+        "--a-srs",
+        "EPSG:25832",
+    ];
+    let run = run_in(
+        &folder,
+        &[&words[..], &["--step", "0.1", "-o", "p.csv"]].concat(),
+    );
+    run.works(&[]);
+    let table = String::from_utf8(super::bytes(&folder, "p.csv")).unwrap();
+    assert_eq!(table.lines().count(), 32);
+    assert!(
+        table.lines().any(|row| row.contains(",0.3,0.3,1,10.3")),
+        "{table}"
+    );
+}
+
+#[test]
+fn lines_in_degrees_by_their_format_alone_are_a_warning() {
+    let line = r#"{"type":"LineString","coordinates":[[0,1],[3,1]]}"#;
+    let folder = folder_with(&[("a.xyz", SLOPE), ("l.geojson", line)]);
+    let words = ["profile", "a.xyz", "--along", "l.geojson", "-o", "p.csv"];
+    run_in(&folder, &words).works(&[
+        "warning: a.xyz states no coordinate system",
+        "taken to be degrees",
+        "--a-srs",
+    ]);
+}

@@ -44,6 +44,14 @@ fn slopes_of_faces_are_those_of_triangles() {
 }
 
 #[test]
+fn of_several_bands_the_first_is_named() {
+    let folder = folder_with(&[("a.xyz", SLOPE)]);
+    run_in(&folder, &["color-relief", "a.xyz", "-o", "c.tif"]).works(&[]);
+    run_in(&folder, &["hillshade", "c.tif", "-o", "h.tif"])
+        .works(&["note: c.tif: band 1 of 4 is used"]);
+}
+
+#[test]
 fn overviews_may_be_left_out_in_one_piece_and_in_tiles() {
     let folder = folder_with(&[("a.xyz", SLOPE)]);
     let of = |words: &[&str]| {

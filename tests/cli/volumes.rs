@@ -194,7 +194,20 @@ fn units_of_plan_and_heights_are_converted() {
             "{system}: {yards}"
         );
         assert_eq!(unit, "yd3");
+        for (named, feet) in [("ft3", 1.0), ("acre-ft", 43_560.0)] {
+            let (volume, unit) = cut(&["--a-srs", system, "--unit", named]);
+            let cubic_meters = volume * feet * 0.3048f64.powi(3);
+            assert!((cubic_meters - found).abs() < 1e-12 * found, "{system}");
+            assert_eq!(unit, named);
+        }
     }
+    let words = ["a.xyz", "--plane", "1", "--a-srs", "EPSG:25832"];
+    let area = |unit| {
+        let found = of(&folder, &[&words[..], &["--unit", unit]].concat());
+        found[0]["common_area"].as_f64().unwrap()
+    };
+    let acre = 43_560.0 * 0.3048 * 0.3048;
+    assert!((area("acre-ft") * acre - area("m3")).abs() < 1e-12 * area("m3"));
     run_in(
         &folder,
         &["volume", "a.xyz", "--plane", "1", "--unit", "yd3"],
@@ -349,6 +362,29 @@ fn polygons_have_a_row_each() {
         "zones.geojson",
     ];
     assert_eq!(run_in(&folder, &levels).stdout.lines().count(), 8);
+}
+
+/// The corners of the base are on the plane but for rounding: nothing is cut, and nothing filled.
+#[test]
+fn a_plane_is_level_with_its_own_rim() {
+    let plane = |[x, y]: [f64; 2]| 0.1 * x + 0.3 * y + 100.0 / 3.0;
+    let corners = [[0.0, 0.0], [9.0, 0.0], [9.0, 9.0], [0.0, 9.0], [4.3, 3.9]];
+    let points: Vec<String> = corners
+        .iter()
+        .map(|&[x, y]| format!("{x} {y} {}", plane([x, y])))
+        .collect();
+    let ring = "[[1.1,1.3],[7.7,2.1],[6.9,7.3],[2.3,5.9],[1.1,1.3]]";
+    let folder = folder_with(&[
+        ("p.xyz", &points.join("\n")),
+        ("r.geojson", &polygons(&[ring])),
+    ]);
+    let words = ["p.xyz", "--a-srs", "EPSG:25832", "--max-edge", "none"];
+    let rim = ["--base", "rim", "--within", "r.geojson"];
+    let row = of(&folder, &[&words[..], &rim].concat())[0].clone();
+    for number in ["cut", "fill", "cut_area", "fill_area"] {
+        assert_eq!(row[number], 0.0, "{row}");
+    }
+    assert!(row["common_area"].as_f64().unwrap() > 20.0);
 }
 
 #[test]

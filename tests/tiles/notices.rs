@@ -53,6 +53,7 @@ const NOT_IN_TILES: &[(&str, &str)] = &[
     ("CheckpointsOutside", "of `accuracy`"),
     ("FewCheckpoints", "of `accuracy`"),
     ("HeightsInMeters", "of `accuracy`"),
+    ("FirstOfBands", "of rasters, which have no tiles"),
 ];
 
 /// The kinds of notices that only tiles have, and why.

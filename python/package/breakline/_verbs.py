@@ -388,7 +388,7 @@ class Volume:
         With ``swell`` or ``shrink``: the cut once it is loose, the ground in place that the fill takes, and the ground in
         place that is left over.
     unit : str or None
-        ``"m3"`` or ``"yd3"``; areas are in its squares. None if no coordinate system is known: then volumes are in cubes
+        ``"m3"``, ``"yd3"``, ``"ft3"`` or ``"acre-ft"``; areas are in its squares, or in acres. None if no coordinate system is known: then volumes are in cubes
         of the unit of the data.
     name : str or None
         The name of the polygon, with ``name_by``.
@@ -449,7 +449,7 @@ def volume(
         Polygons, with a row for each, as :func:`tin` takes them for ``boundary``; each closed line is one, too.
     name_by : str, optional
         The attribute of the polygons in a file that names them.
-    unit : "m3" or "yd3", optional
+    unit : "m3", "yd3", "ft3" or "acre-ft", optional
         The unit of volumes; areas are in its squares. Cubic meters if the coordinate system is known.
     swell, shrink : float, optional
         The volumes of loose and of compacted ground, as multiples of those in place, such as 1.25 and 0.9; 1 by default.

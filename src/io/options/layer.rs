@@ -1,6 +1,7 @@
 //! What is read of a vector file.
 
 use super::cut::OnDamage;
+use crate::data::named;
 use crate::error::{Error, Result};
 use crate::io::bytes::field::no_such_field;
 
@@ -96,14 +97,9 @@ impl Options<'_> {
     }
 }
 
-/// Returns the position of a name: as written, else in any case.
+/// Returns the position of a name among several.
 fn position(names: &[String], wanted: &str) -> Option<usize> {
-    let exact = names.iter().position(|name| name == wanted);
-    exact.or_else(|| {
-        names
-            .iter()
-            .position(|name| name.eq_ignore_ascii_case(wanted))
-    })
+    named(names.iter().map(String::as_str), wanted)
 }
 
 /// The positions of the requested attributes in a layer.

@@ -4,6 +4,7 @@ pub(crate) mod event;
 pub(crate) mod memory;
 pub(crate) mod notice;
 mod notice_lists;
+mod notice_systems;
 mod notice_text;
 pub(crate) mod units;
 pub(crate) mod watched;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::time::Duration;
 
-use super::units::Quantity;
+use super::units::{Quantity, Units};
 use crate::crs::Crs;
 use crate::data::Bounds;
 use crate::error::Wording;
@@ -103,6 +103,8 @@ pub enum Notice {
         /// The system that is used.
         assigned: Box<Crs>,
     },
+    /// A raster has this many bands: the first one is used.
+    FirstOfBands(PathBuf, u16),
     /// A file states no coordinate system: that of the other files is used.
     SystemOfOthers(PathBuf, Box<Crs>),
     /// The heights of a file are taken to be in the unit of other files, with its name, because its
@@ -495,6 +497,10 @@ impl Notice {
                     false => Severity::Note,
                 }
             }
+            Notice::SystemOfOthers(_, crs) => match Units::of(Some(crs)).is_angular() {
+                true => Severity::Warning,
+                false => Severity::Note,
+            },
             Notice::Opened(..)
             | Notice::WithoutClasses(_)
             | Notice::LayerRead { .. }
@@ -502,11 +508,11 @@ impl Notice {
             | Notice::Triangulated(_)
             | Notice::Uncertain(..) => Severity::Detail,
             Notice::GroundUsed
+            | Notice::FirstOfBands(..)
             | Notice::PointsWithoutClassUsed(_)
             | Notice::NoiseUnused
             | Notice::MemoryUnused(_)
             | Notice::Reassigned { .. }
-            | Notice::SystemOfOthers(..)
             | Notice::NoSystem
             | Notice::DifferentUnits(..)
             | Notice::Reprojecting(..)

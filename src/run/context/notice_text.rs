@@ -8,8 +8,10 @@ use super::notice_lists::{
     named, of_file, of_listed, polygons_outside, polygons_partly_outside, rings_overlap,
     sections_cross,
 };
+use super::notice_systems::{
+    different_units, first_of_bands, heights_of_others, no_system, reassigned, system_of_others,
+};
 use super::units::{Quantity, bytes, neat, number};
-use crate::crs::Crs;
 use crate::data::Bounds;
 use crate::error::{Command, Setting, Wording, wording};
 use crate::run::request::lines::LineRole;
@@ -138,7 +140,8 @@ fn text(notice: &Notice) -> Wording {
         Notice::PointsWithoutClassUsed(count) => points_without_class(*count).into(),
         Notice::AllClassesUsed => all_classes_used(),
         Notice::Reassigned { path, stated, assigned } => reassigned(path, stated, assigned),
-        Notice::SystemOfOthers(path, crs) => system_of_others(path, crs).into(),
+        Notice::FirstOfBands(path, bands) => first_of_bands(path, *bands).into(),
+        Notice::SystemOfOthers(path, crs) => system_of_others(path, crs),
         Notice::HeightsOfOthers(path, unit) => heights_of_others(path, unit).into(),
         Notice::NoSystem => no_system().into(),
         Notice::DifferentUnits(plan, height) => different_units(plan, height).into(),
@@ -328,38 +331,6 @@ fn all_classes_used() -> Wording {
         Setting::Class,
         ")"
     ]
-}
-
-fn reassigned(path: &Path, stated: &Crs, assigned: &Crs) -> Wording {
-    wording![
-        format!(
-            "{} states {stated}; {assigned} is used, as given by ",
-            path.display()
-        ),
-        Setting::Crs
-    ]
-}
-
-fn system_of_others(path: &Path, crs: &Crs) -> String {
-    format!(
-        "{} states no coordinate system; {crs} is used, as in the other files",
-        path.display()
-    )
-}
-
-fn heights_of_others(path: &Path, unit: &str) -> String {
-    format!(
-        "{} states no unit of heights: they are taken to be in units of the {unit}, as in the other files",
-        path.display()
-    )
-}
-
-fn no_system() -> &'static str {
-    "no coordinate system is stated: lengths are in the units of the data"
-}
-
-fn different_units(plan: &str, height: &str) -> String {
-    format!("x and y are in units of the {plan}, heights in units of the {height}")
 }
 
 fn far_apart(before: &Path, after: &Path, gap: &Quantity) -> String {

@@ -65,7 +65,9 @@ pub(crate) fn read_whole<'a>(
     journal.context.check()?;
     let path = input.path();
     let layer = match input {
-        Input::File(path) => open::whole_layer(path, &journal.context).map(Cow::Owned),
+        Input::File(path) => {
+            open::whole_layer(path, OnDamage::Refuse, &journal.context).map(Cow::Owned)
+        }
         Input::Memory(layer) => Ok(Cow::Borrowed(&**layer)),
     };
     let layer = layer.map_err(|e| e.in_file(path))?;

@@ -9,6 +9,7 @@ use super::surface::SurfaceProduct;
 use crate::crs::{Crs, Unit};
 use crate::data::{Columns, PointBatch, PointSource, Shape};
 use crate::error::{Error, Result, Setting, wording};
+use crate::io::no_such_field;
 use crate::io::points::Options;
 use crate::io::text::Axes;
 use crate::io::text::table::{self, TableBatch};
@@ -30,8 +31,8 @@ pub struct AccuracyOptions {
     pub read: Options,
     /// The coordinate system of the checkpoints, whatever their file states.
     pub assign: Option<Crs>,
-    /// The field by which checkpoints are grouped: a column of text, a number of a vector layer, or
-    /// `class` of LAS.
+    /// The field by which checkpoints are grouped: a column of text, an attribute of a vector layer,
+    /// or `class` of LAS.
     pub group_by: Option<String>,
     /// The group of each checkpoint, if these are in memory; empty if they are not grouped.
     pub groups: Vec<String>,
@@ -380,28 +381,38 @@ impl Checkpoints {
         options: &AccuracyOptions,
         journal: &Journal,
     ) -> Result<Self> {
-        let columns: Vec<&str> = group_by.into_iter().collect();
-        let layer = open::layer(path, &columns, options.read.cut, &journal.context)
-            .map_err(|e| e.in_file(path))?;
+        let (cut, context) = (options.read.cut, &journal.context);
+        let layer = match group_by {
+            None => open::layer(path, &[], cut, context),
+            Some(_) => open::whole_layer(path, cut, context),
+        };
+        let layer = layer.map_err(|e| e.in_file(path))?;
         journal.add_warnings(path, &layer.warnings);
+        let groups = match group_by {
+            None => None,
+            Some(field) => {
+                let kept = layer.attributes.as_ref();
+                let known = kept.map_or(&[][..], |attributes| &attributes.names);
+                let groups = kept.and_then(|attributes| attributes.texts(field));
+                Some(groups.ok_or_else(|| {
+                    no_such_field(field, known.iter().map(String::as_str)).in_file(path)
+                })?)
+            }
+        };
         let mut rows = Vec::new();
         for ((number, shape), i) in (1..).zip(&layer.shapes).zip(0..) {
             let Shape::Points(points) = shape else {
                 continue;
             };
-            let group = layer
-                .columns
-                .first()
-                .and_then(|column| column.values.get(i));
+            let group = groups
+                .as_ref()
+                .map(|groups| groups.get(i).cloned().unwrap_or_default());
             for &point in points {
                 rows.push(CheckpointRow {
                     number,
                     point,
                     surface: f64::NAN,
-                    group: group.map(|value| match value.is_nan() {
-                        true => String::new(),
-                        false => value.to_string(),
-                    }),
+                    group: group.clone(),
                 });
             }
         }

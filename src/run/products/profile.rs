@@ -10,7 +10,7 @@ use super::station_format::StationFormat;
 use super::surface::SurfaceProduct;
 use super::together::common_system;
 use crate::crs::Crs;
-use crate::data::{Layer, Profile, Profiles, Station, Stretch};
+use crate::data::{Layer, Multiples, Profile, Profiles, Station, Stretch};
 use crate::error::{Error, Result, Setting, wording};
 use crate::io::profiles::{self, PlotOptions};
 use crate::io::{Destination, OnDamage};
@@ -357,7 +357,7 @@ fn stations(axis: &[[f64; 2]], options: &SectionOptions) -> Result<Vec<f64>> {
             let number = (first / interval).ceil();
             // One more, as the first may be below by a rounding error.
             Ok((0..=count as u32 + 1)
-                .map(|count| (number + f64::from(count)) * interval)
+                .map(|count| Multiples::of(*interval).at(number + f64::from(count)))
                 .skip_while(|at| *at < first)
                 .take_while(|at| *at <= last)
                 .collect())

@@ -6,7 +6,7 @@ use super::overlaps::overlaps;
 use super::surface::{Model, SurfaceProduct};
 use super::together::{COMPARE_EXTENTS, no_overlap};
 use crate::crs::Crs;
-use crate::data::{Layer, Mesh, Surface, Value};
+use crate::data::{Layer, Mesh, Surface};
 use crate::error::{Error, Result, Setting, wording};
 use crate::io::{OnDamage, no_such_field};
 use crate::run::context::notice::{Notice, PartlyCounted};
@@ -24,6 +24,12 @@ const VISITS: u64 = 3;
 
 /// The meters in an international yard.
 const YARD: f64 = 0.9144;
+
+/// The meters in a foot.
+const FOOT: f64 = 0.3048;
+
+/// The square feet in an acre.
+const ACRE: f64 = 43_560.0;
 
 /// The share of the area of a polygon that makes no difference: corners on the rim of a surface, or
 /// on another ring, are rounded.
@@ -114,13 +120,17 @@ pub struct VolumeOptions {
     pub names: [PathBuf; 2],
 }
 
-/// A unit of volumes; areas are in its squares.
+/// A unit of volumes; areas are in its squares, with acre-feet in acres.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum VolumeUnit {
     /// Cubic meters.
     CubicMeters,
     /// Cubic yards, of 0.9144 meters.
     CubicYards,
+    /// Cubic feet, of 0.3048 meters.
+    CubicFeet,
+    /// Acre-feet, of 43 560 cubic feet.
+    AcreFeet,
 }
 
 impl VolumeUnit {
@@ -129,6 +139,8 @@ impl VolumeUnit {
         match self {
             VolumeUnit::CubicMeters => ["m3", "m2"],
             VolumeUnit::CubicYards => ["yd3", "yd2"],
+            VolumeUnit::CubicFeet => ["ft3", "ft2"],
+            VolumeUnit::AcreFeet => ["acre-ft", "acre"],
         }
     }
 
@@ -137,11 +149,13 @@ impl VolumeUnit {
         unit.map_or(["cubic units", "square units"], VolumeUnit::symbols)
     }
 
-    /// Returns the meters in the length whose cube it is.
-    fn length(self) -> f64 {
+    /// Returns the square meters in its unit of areas, and the meters in its unit of heights.
+    fn area_and_height(self) -> [f64; 2] {
         match self {
-            VolumeUnit::CubicMeters => 1.0,
-            VolumeUnit::CubicYards => YARD,
+            VolumeUnit::CubicMeters => [1.0; 2],
+            VolumeUnit::CubicYards => [YARD * YARD, YARD],
+            VolumeUnit::CubicFeet => [FOOT * FOOT, FOOT],
+            VolumeUnit::AcreFeet => [ACRE * FOOT * FOOT, FOOT],
         }
     }
 }
@@ -310,10 +324,11 @@ impl Scale {
         match (units.in_metres(), crs) {
             (Some([plan, height]), _) => {
                 let unit = asked.unwrap_or(VolumeUnit::CubicMeters);
-                let [plan, height] = [plan, height].map(|factor| factor / unit.length());
+                let [of_area, of_height] = unit.area_and_height();
+                let area = plan * plan / of_area;
                 Ok(Scale {
-                    area: plan * plan,
-                    volume: plan * plan * height,
+                    area,
+                    volume: area * (height / of_height),
                     unit: Some(unit),
                 })
             }
@@ -447,18 +462,10 @@ impl<'a> Outlines<'a> {
 fn names_of(layer: &Layer, field: &str, records: &[usize]) -> Result<Vec<String>> {
     let kept = layer.attributes.as_ref();
     let known = kept.map_or(&[][..], |attributes| &attributes.names);
-    let exact = known.iter().position(|name| name == field);
-    let column = exact
-        .or_else(|| {
-            known
-                .iter()
-                .position(|name| name.eq_ignore_ascii_case(field))
-        })
+    let texts = kept
+        .and_then(|attributes| attributes.texts(field))
         .ok_or_else(|| no_such_field(field, known.iter().map(String::as_str)))?;
-    let value = |record: &usize| {
-        let row = kept.and_then(|attributes| attributes.rows.get(record.checked_sub(1)?));
-        row.and_then(|row| row.get(column)).map(Value::text)
-    };
+    let value = |record: &usize| texts.get(record.checked_sub(1)?).cloned();
     Ok(records
         .iter()
         .map(|record| value(record).unwrap_or_default())
@@ -524,8 +531,12 @@ impl Computing<'_> {
         for (zone, (&record, rings)) in records.iter().zip(rings).enumerate() {
             let outline = Zones::new(std::slice::from_ref(rings))?;
             let base = rim_base(&outline, &interpolant).map_err(|e| at_record(e, path, record))?;
+            let heights = highest(&base);
             let base = terrain::VolumeBase::Surface(&base);
-            let found = self.volumes(&watched, base, Some(&outline))?;
+            let mut found = self.volumes(&watched, base, Some(&outline))?;
+            found
+                .iter_mut()
+                .for_each(|volume| level_within_rounding(volume, heights));
             rows.extend(found.into_iter().map(|volume| VolumeRow {
                 record: Some(record),
                 name: names.as_ref().map(|names| names[zone].clone()),
@@ -570,6 +581,29 @@ impl Computing<'_> {
                 volume,
                 earthwork: None,
             })
+    }
+}
+
+/// The rounding errors of heights on a surface, relative to the largest of these.
+const HEIGHT_ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+/// Returns the largest amount of a height.
+fn highest(mesh: &Mesh) -> f64 {
+    let heights = (0..mesh.vertex_count() as u32).map(|vertex| mesh.position(vertex)[2].abs());
+    heights.fold(0.0, f64::max)
+}
+
+/// Removes a cut or a fill that is no more than rounding errors of these heights over the area: the
+/// corners of a base that is taken from the surface are rounded, and on a plane nothing is cut.
+fn level_within_rounding(volume: &mut Volume, heights: f64) {
+    let most = HEIGHT_ROUNDING * heights * volume.common_area;
+    for (volume, area) in [
+        (&mut volume.cut, &mut volume.cut_area),
+        (&mut volume.fill, &mut volume.fill_area),
+    ] {
+        if *volume <= most {
+            (*volume, *area) = (0.0, 0.0);
+        }
     }
 }
 

@@ -25,6 +25,7 @@ use crate::io::points::Options;
 use crate::io::triangle::{self, LineGraph};
 use crate::io::{OnDamage, Watch, gdal, layer, points, raster};
 use crate::run::context::memory;
+use crate::run::context::notice::Notice;
 use crate::run::context::{Context, Journal, Size, Stage};
 use crate::run::request::input::{Input, MemoryPoints, MemorySource};
 use crate::terrain::CompactTin;
@@ -183,11 +184,11 @@ pub(crate) fn layer(
 }
 
 /// Reads a vector layer with all its attributes, as far as the reader keeps them.
-pub(crate) fn whole_layer(path: &Path, context: &Context) -> Result<Layer> {
+pub(crate) fn whole_layer(path: &Path, cut: OnDamage, context: &Context) -> Result<Layer> {
     let spec = spec(path)?;
     let options = layer::Options {
         keeps_attributes: true,
-        ..spec.options(&[], OnDamage::Refuse)
+        ..spec.options(&[], cut)
     };
     read_layer(&spec.path, &options, context)
 }
@@ -258,6 +259,14 @@ pub(crate) enum OpenRaster {
 pub(crate) fn raster(path: &Path, journal: &Journal) -> Result<OpenRaster> {
     let raster = Raster::open(path)?;
     let cells = raster.cells();
+    if let Raster::GeoTiff(reader) = &raster
+        && reader.info().bands > 1
+    {
+        journal.add(Notice::FirstOfBands(
+            path.to_path_buf(),
+            reader.info().bands,
+        ));
+    }
     let raster = match raster {
         Raster::GeoTiff(reader) if cells > MOST_CELLS_IN_MEMORY => {
             let warnings = reader.info().warnings.clone();

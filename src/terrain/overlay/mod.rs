@@ -1,13 +1,16 @@
 //! The overlay of two surfaces: what each face of one has in common with each face of the other.
 
+mod number;
 mod polygon;
 
 use std::convert::Infallible;
 
-use self::polygon::Clipper;
+pub(super) use self::number::Number;
+use self::polygon::{Clipper, Common};
 pub(super) use self::polygon::{Corner, clipped, from_least, within};
 use super::boxes::{Boxes, Extent, LocatedFace};
 use crate::data::{Surface, map_batches};
+use crate::triangulation::num::Pair;
 
 /// What a face of one surface and a face of another have in common.
 #[derive(Debug, Clone, Copy)]
@@ -18,6 +21,8 @@ pub(super) struct Overlap<'a> {
     pub(super) faces: [u32; 2],
     /// The corners of a convex polygon, counter-clockwise: three or more.
     pub(super) corners: &'a [Corner],
+    /// The same with twice the digits, of a sliver whose area those above do not give.
+    pub(super) fine: Option<&'a [Corner<Pair>]>,
 }
 
 /// Calls `add` with all that faces of one surface have in common with faces of another one, on all
@@ -52,12 +57,17 @@ pub(super) fn overlay<R: Default + Send>(
                 } else {
                     ([triangle, other], [number, face.number])
                 };
-                let (origin, corners) = clipper.common(pair);
+                let Common {
+                    origin,
+                    corners,
+                    fine,
+                } = clipper.common(pair);
                 if corners.len() > 2 {
                     let overlap = Overlap {
                         origin,
                         faces: numbers,
                         corners,
+                        fine,
                     };
                     add(&mut value, overlap);
                 }

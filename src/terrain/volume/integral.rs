@@ -1,6 +1,6 @@
 //! The volume between two surfaces over a polygon on which the difference of heights is linear.
 
-use crate::terrain::overlay::Corner;
+use crate::terrain::overlay::{Corner, Number};
 
 /// Volumes and areas over a polygon: where the first surface is higher, and where the second is.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -16,7 +16,7 @@ pub(in crate::terrain) struct Integral {
 /// Returns the volumes and areas over a convex polygon, counter-clockwise.
 ///
 /// With the surfaces exchanged, the same numbers are exchanged.
-pub(in crate::terrain) fn integral(corners: &[Corner]) -> Integral {
+pub(in crate::terrain) fn integral<T: Number>(corners: &[Corner<T>]) -> Integral {
     let mut sum = Integral::default();
     let Some((first, others)) = corners.split_first() else {
         return sum;
@@ -28,31 +28,35 @@ pub(in crate::terrain) fn integral(corners: &[Corner]) -> Integral {
 }
 
 impl Integral {
-    fn add_triangle(&mut self, corners: [&Corner; 3]) {
+    fn add_triangle<T: Number>(&mut self, corners: [&Corner<T>; 3]) {
         let [a, b, c] = corners.map(|corner| corner.at);
-        let area = ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2.0;
+        let twice = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
         // Less than 0 by rounding only.
-        let area = area.max(0.0);
+        let area = match twice.value() > 0.0 {
+            true => twice * T::of(0.5),
+            false => T::of(0.0),
+        };
         let above = corners.map(|corner| corner.heights[0] - corner.heights[1]);
-        let whole = area * ((above[0] + above[1] + above[2]) / 3.0);
-        self.area += area;
-        let is_mixed = above.iter().any(|&d| d > 0.0) && above.iter().any(|&d| d < 0.0);
+        let whole = area * ((above[0] + above[1] + above[2]) / T::of(3.0));
+        self.area += area.value();
+        let signs = above.map(T::value);
+        let is_mixed = signs.iter().any(|&d| d > 0.0) && signs.iter().any(|&d| d < 0.0);
         if !is_mixed {
-            self.add_part(whole, area);
+            self.add_part(whole.value(), area.value());
             return;
         }
         // One corner is alone on its side of the line on which both are equally high.
         // (Signs are compared: products of small numbers may be 0.)
         let is_alone = |i: usize| {
-            let [d, e, f] = [above[i], above[(i + 1) % 3], above[(i + 2) % 3]];
+            let [d, e, f] = [signs[i], signs[(i + 1) % 3], signs[(i + 2) % 3]];
             d > 0.0 && e <= 0.0 && f <= 0.0 || d < 0.0 && e >= 0.0 && f >= 0.0
         };
         let alone = (0..3).find(|&i| is_alone(i)).unwrap_or(0);
         let [d, e, f] = [0, 1, 2].map(|k| above[(alone + k) % 3]);
         let tip = area * (d / (d - e)) * (d / (d - f));
-        let of_tip = tip * (d / 3.0);
-        self.add_part(of_tip, tip);
-        self.add_part(whole - of_tip, area - tip);
+        let of_tip = tip * (d / T::of(3.0));
+        self.add_part(of_tip.value(), tip.value());
+        self.add_part((whole - of_tip).value(), (area - tip).value());
     }
 
     /// Adds a volume over an area in which one surface is nowhere below the other.

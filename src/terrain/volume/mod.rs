@@ -11,7 +11,7 @@ pub(super) use self::integral::integral;
 pub(super) use self::sum::Sum;
 use self::sum::Unit;
 pub use self::zones::Zones;
-use super::overlay::{Corner, Overlap, from_least, overlay};
+use super::overlay::{Corner, Number, Overlap, from_least, overlay};
 use crate::data::{Surface, map_batches};
 use crate::error::{Error, Result};
 
@@ -123,7 +123,11 @@ pub fn volumes(
         VolumeBase::Surface(other) => {
             let mut common = TotalsByRow::default();
             let add = |sums: &mut RowBuffer, overlap: Overlap<'_>| {
-                rows.add(sums, overlap.origin, overlap.corners, None);
+                match (zones, overlap.fine) {
+                    (None, Some(fine)) => rows.add_to(sums.rows.of_row(0), fine, None),
+                    // A sliver that rounding moves out of a zone is none of it.
+                    _ => rows.add(sums, overlap.origin, overlap.corners, None),
+                }
             };
             overlay([surface, other], add, |sums| common.add(&sums.rows));
             (common, area_of(other))
@@ -243,7 +247,7 @@ impl Rows<'_> {
         }
     }
 
-    fn add_to(&self, totals: &mut Totals, corners: &[Corner], stretch: Option<f64>) {
+    fn add_to<T: Number>(&self, totals: &mut Totals, corners: &[Corner<T>], stretch: Option<f64>) {
         let part = integral(corners);
         for k in 0..2 {
             totals.volumes[k] += self.units.volume.of(part.volumes[k]);

@@ -1,6 +1,6 @@
 //! Points of a line at regular distances.
 
-use crate::data::{LinePoint, Stretch};
+use crate::data::{LinePoint, Multiples, Stretch};
 
 /// Returns the points of a stretch at all multiples of a step along its line, besides its ends, the
 /// points at `kept` distances, and both heights of each step of the surface. Heights are exact, as
@@ -15,17 +15,18 @@ pub(crate) fn stepped(stretch: &Stretch, step: f64, kept: &[f64]) -> Stretch {
     };
     found.push(*first);
     let mut number = (first.along / step).floor() + 1.0;
+    let multiples = Multiples::of(step);
     for pair in stretch.windows(2) {
         let [from, to] = [pair[0], pair[1]];
-        while number * step < to.along {
-            let along = number * step;
+        while multiples.at(number) < to.along {
+            let along = multiples.at(number);
             if along > from.along {
                 found.push(between(from, to, along));
             }
             number += 1.0;
         }
         let is_last = std::ptr::eq(&pair[1], &stretch[stretch.len() - 1]);
-        let is_at_step = number * step == to.along;
+        let is_at_step = multiples.at(number) == to.along;
         let is_kept = kept.binary_search_by(|at| at.total_cmp(&to.along)).is_ok();
         if is_last || is_at_step || is_kept {
             found.push(to);

@@ -51,7 +51,7 @@ pub(crate) struct AccuracyArgs {
 
     /// Statistics by a field of the checkpoints, such as land cover
     ///
-    /// A column of text, a number of a layer, or `class` of LAS.
+    /// A column of text, an attribute of a layer, or `class` of LAS.
     #[arg(long, value_name = "FIELD", help_heading = "Accuracy")]
     pub(crate) group_by: Option<String>,
 

@@ -658,7 +658,7 @@ pub(crate) struct HillshadeArgs {
 
     /// How shades follow from slopes
     ///
-    /// As gdaldem shades by default, and with its options of these names.
+    /// Names are those of the options of gdaldem, which shades as `standard` without them.
     #[arg(
         long,
         value_enum,

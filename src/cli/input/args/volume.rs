@@ -45,7 +45,8 @@ pub(crate) struct VolumeArgs {
 
     /// Polygons, with a row of volumes for each
     ///
-    /// Rows have the number of the record, counted from 1. Lines count as polygons where they close
+    /// Finished surfaces are clipped by it, too: --boundary is for building. Rows have the number of
+    /// the record, counted from 1. Lines count as polygons where they close
     /// to rings; a ring within another is a hole. `FILE:LAYER` names the layer of a file with
     /// several.
     #[arg(long, value_name = "FILE[:LAYER]", help_heading = "Volume")]
@@ -107,6 +108,10 @@ pub(crate) enum UnitArg {
     M3,
     /// Cubic yards of 0.9144 meters
     Yd3,
+    /// Cubic feet of 0.3048 meters
+    Ft3,
+    /// Acre-feet of 43 560 cubic feet; areas are in acres
+    AcreFt,
 }
 
 impl From<UnitArg> for VolumeUnit {
@@ -114,6 +119,8 @@ impl From<UnitArg> for VolumeUnit {
         match arg {
             UnitArg::M3 => VolumeUnit::CubicMeters,
             UnitArg::Yd3 => VolumeUnit::CubicYards,
+            UnitArg::Ft3 => VolumeUnit::CubicFeet,
+            UnitArg::AcreFt => VolumeUnit::AcreFeet,
         }
     }
 }

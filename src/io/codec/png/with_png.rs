@@ -40,7 +40,7 @@ pub fn write_gray<'a>(target: impl Into<Destination<'a>>, source: &dyn BlockSour
 }
 
 /// Like [`write_gray`], but writes the colors of heights, with 8 bits for each of red, green, blue
-/// and opacity.
+/// and opacity. Memory is needed for 512 rows, 12 bytes per cell.
 ///
 /// # Errors
 /// Those of [`write_gray`].

@@ -8,7 +8,7 @@ use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
-use crate::data::Value;
+use crate::data::{Value, named};
 use crate::error::{Error, Result};
 use crate::io::bytes::decimal_mark::DecimalMark;
 use crate::io::bytes::field::parse_number;
@@ -117,21 +117,10 @@ impl Table {
     /// # Errors
     /// If there is none, or its type has no numbers; the message lists the fields.
     pub(super) fn find(&self, name: &str) -> Result<Field> {
-        let field = self
-            .fields
-            .iter()
-            .find(|field| field.name == name)
-            .or_else(|| {
-                self.fields
-                    .iter()
-                    .find(|field| field.name.eq_ignore_ascii_case(name))
-            })
-            .ok_or_else(|| {
-                crate::io::bytes::field::no_such_field(
-                    name,
-                    self.fields.iter().map(|f| f.name.as_str()),
-                )
-            })?;
+        let names = self.fields.iter().map(|field| field.name.as_str());
+        let field = named(names.clone(), name)
+            .map(|at| &self.fields[at])
+            .ok_or_else(|| crate::io::bytes::field::no_such_field(name, names))?;
         match (field.kind, field.width) {
             (b'N' | b'F' | b'C', _) | (b'I' | b'+', 4) | (b'B' | b'O' | b'Y', 8) => {
                 Ok(field.clone())

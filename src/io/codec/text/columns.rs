@@ -4,9 +4,27 @@ use super::separator::{Axes, Separator};
 use crate::data::{Columns, PointBatch};
 use crate::error::{Error, Result, Setting, Wording, wording};
 
-const X_NAMES: &[&str] = &["x", "easting", "east", "e", "lon", "long", "longitude"];
-const Y_NAMES: &[&str] = &["y", "northing", "north", "n", "lat", "latitude"];
-const Z_NAMES: &[&str] = &["z", "elevation", "elev", "height", "h", "altitude", "alt"];
+const X_NAMES: &[&str] = &[
+    "x",
+    "easting",
+    "east",
+    "e",
+    "lon",
+    "long",
+    "longitude",
+    "point_x",
+];
+const Y_NAMES: &[&str] = &["y", "northing", "north", "n", "lat", "latitude", "point_y"];
+const Z_NAMES: &[&str] = &[
+    "z",
+    "elevation",
+    "elev",
+    "height",
+    "h",
+    "altitude",
+    "alt",
+    "point_z",
+];
 const CLASS_NAMES: &[&str] = &["class", "classification"];
 
 const CURE: &str = "correct the line, or make it a comment with # at its beginning";

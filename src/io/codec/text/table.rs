@@ -12,7 +12,7 @@ use super::first_column::{self, FirstColumn, Guess};
 use super::first_lines::Start;
 use super::lines::{Line, Lines};
 use super::separator::{Axes, Separator};
-use crate::data::Columns;
+use crate::data::{Columns, named};
 use crate::error::{Error, Result, Setting, Wording, wording};
 use crate::io::bytes::decimal_mark::DecimalMark;
 use crate::io::options::cut::OnDamage;
@@ -192,11 +192,10 @@ impl TextTable {
         self.header.is_some()
     }
 
-    /// Returns the number of the column with a name, from 1, in any case of letters.
+    /// Returns the number of the column with a name, from 1: as written, else in any case.
     pub fn column(&self, name: &str) -> Option<usize> {
         let names = &self.header.as_ref()?.names;
-        let is_it = |other: &String| other.eq_ignore_ascii_case(name);
-        names.iter().position(is_it).map(|at| at + 1)
+        named(names.iter().map(String::as_str), name).map(|at| at + 1)
     }
 
     /// Returns the names of the columns; none without a header.
