@@ -31,8 +31,8 @@ pub struct AccuracyOptions {
     pub read: Options,
     /// The coordinate system of the checkpoints, whatever their file states.
     pub assign: Option<Crs>,
-    /// The field by which checkpoints are grouped: a column of text, an attribute of a vector layer,
-    /// or `class` of LAS.
+    /// The field by which checkpoints are grouped: a column of text, an attribute of a layer, or
+    /// `class` of LAS.
     pub group_by: Option<String>,
     /// The group of each checkpoint, if these are in memory; empty if they are not grouped.
     pub groups: Vec<String>,

@@ -41,8 +41,8 @@ pub(super) fn is_picture(target: &Target) -> bool {
         .is_some_and(|format| format.content == Content::Picture)
 }
 
-/// Writes shades or colors to all targets, as pictures or rasters. `cell_bytes` returns the bytes of
-/// a cell of a target before compression.
+/// Writes shades or colors to all targets, as pictures or rasters. `cell_bytes` returns the bytes
+/// of a cell of a target before compression.
 ///
 /// # Errors
 /// Those of [`announce`]; and if a file cannot be written, or the run is canceled.

@@ -109,7 +109,8 @@ impl<S: BlockSource> QuantityMap<S> {
     /// [`Light`](super::Light). Roughness, ruggedness and position do not depend on them.
     ///
     /// # Errors
-    /// If the frame of the source has no inverse, or the quantity is one of [faces](Gradient::Faces).
+    /// If the frame of the source has no inverse, or the quantity is that of
+    /// [faces](Gradient::Faces).
     pub fn of(source: S, quantity: Quantity, z_factor: f64, x_scale: f64) -> Result<Self> {
         if quantity.gradient() == Some(Gradient::Faces) {
             return Err(Error::usage(wording![

@@ -105,8 +105,8 @@ impl<V: CellValue> Canvas<V> {
             index,
             recent,
         } = self;
-        let placed = corners.map(|p| placement.to_plane(p));
-        bins_of(&placed, placement, Canvas::SIDE, |row, column| {
+        let in_plane = corners.map(|p| placement.to_plane(p));
+        bins_of(&in_plane, placement, Canvas::SIDE, |row, column| {
             if !block_rows.contains(&row) {
                 return;
             }
@@ -126,7 +126,7 @@ impl<V: CellValue> Canvas<V> {
             let (of_rows, of_columns) = (0..rows.values().len(), 0..columns.values().len());
             let mut ink = V::ink(cells);
             ink.of_face(0, &corners);
-            Scan { columns, rows }.draw(placed, &of_rows, &of_columns, &mut ink);
+            Scan { columns, rows }.draw(in_plane, &of_rows, &of_columns, &mut ink);
         });
     }
 

@@ -67,17 +67,17 @@ impl Drawing {
                     face: 0,
                 };
                 for &(face, corners) in &*triangles {
-                    let placed = corners.map(|p| placement.to_plane(p));
-                    let Some([rows, columns]) = cells_of(&placed, placement) else {
+                    let in_plane = corners.map(|p| placement.to_plane(p));
+                    let Some([rows, columns]) = cells_of(&in_plane, placement) else {
                         continue;
                     };
                     // PERF: every other face with one center in its box does not contain it.
                     let is_one = rows.len() == 1 && columns.len() == 1;
-                    if is_one && scan.misses(&placed, rows.start, columns.start) {
+                    if is_one && scan.misses(&in_plane, rows.start, columns.start) {
                         continue;
                     }
                     ink.of_face(face, &corners);
-                    scan.draw(placed, &rows, &columns, &mut ink);
+                    scan.draw(in_plane, &rows, &columns, &mut ink);
                 }
             });
         Some(Drawing { width, cells })
