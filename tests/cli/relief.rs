@@ -75,9 +75,9 @@ fn overviews_may_be_left_out_in_one_piece_and_in_tiles() {
         assert!(of(&[verb, "--overviews", "auto", "--tiles", "2x2"]) == whole);
         let mut decoder = tiff::decoder::Decoder::new(std::io::Cursor::new(without)).unwrap();
         assert!(!decoder.more_images());
-        let cells = decoder.read_image().unwrap();
+        let cells = format!("{:?}", decoder.read_image().unwrap());
         let mut decoder = tiff::decoder::Decoder::new(std::io::Cursor::new(whole)).unwrap();
-        assert!(decoder.read_image().unwrap() == cells && decoder.more_images());
+        assert!(format!("{:?}", decoder.read_image().unwrap()) == cells && decoder.more_images());
     }
 }
 

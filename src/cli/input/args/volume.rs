@@ -46,8 +46,8 @@ pub(crate) struct VolumeArgs {
     /// Polygons, with a row of volumes for each
     ///
     /// Finished surfaces are clipped by them, too: --boundary is for building. Rows have the number
-    /// of the record, counted from 1. Lines count as polygons where they close to rings; a ring within another is a hole. `FILE:LAYER` names the layer of a file with
-    /// several.
+    /// of the record, counted from 1. Lines count as polygons where they close to rings; a ring
+    /// within another is a hole. `FILE:LAYER` names the layer of a file with several.
     #[arg(long, value_name = "FILE[:LAYER]", help_heading = "Volume")]
     pub(crate) within: Option<PathBuf>,
 

@@ -13,9 +13,9 @@
 //!
 //! | column | names |
 //! |---|---|
-//! | x | `x`, `easting`, `east`, `e`, `lon`, `long`, `longitude` |
-//! | y | `y`, `northing`, `north`, `n`, `lat`, `latitude` |
-//! | z | `z`, `elevation`, `elev`, `height`, `h`, `altitude`, `alt` |
+//! | x | `x`, `easting`, `east`, `e`, `lon`, `long`, `longitude`, `POINT_X` |
+//! | y | `y`, `northing`, `north`, `n`, `lat`, `latitude`, `POINT_Y` |
+//! | z | `z`, `elevation`, `elev`, `height`, `h`, `altitude`, `alt`, `POINT_Z` |
 //! | class, optional | `class`, `classification` |
 //!
 //! A unit in brackets after a name is ignored: `Height (m)`. Comments begin with `#` or `//`. A
