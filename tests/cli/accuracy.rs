@@ -168,7 +168,7 @@ fn thirty_checkpoints_are_enough_and_layers_are_read() {
     assert_eq!(found["sets"][1]["group"], "oak");
     let words = ["s.geojson", "--group-by", "cover"];
     run_in(&folder, &[&base[..], &words].concat())
-        .fails(1, &["s.geojson: there is no field cover", "name one of Z"]);
+        .fails(2, &["s.geojson: there is no field cover", "name one of Z"]);
 }
 
 #[test]
