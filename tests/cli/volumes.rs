@@ -204,7 +204,7 @@ fn units_of_plan_and_heights_are_converted() {
     let words = ["a.xyz", "--plane", "1", "--a-srs", "EPSG:25832"];
     let area = |unit| {
         let found = of(&folder, &[&words[..], &["--unit", unit]].concat());
-        found[0]["common_area"].as_f64().unwrap()
+        found["rows"][0]["common_area"].as_f64().unwrap()
     };
     let acre = 43_560.0 * 0.3048 * 0.3048;
     assert!((area("acre-ft") * acre - area("m3")).abs() < 1e-12 * area("m3"));
@@ -380,7 +380,7 @@ fn a_plane_is_level_with_its_own_rim() {
     ]);
     let words = ["p.xyz", "--a-srs", "EPSG:25832", "--max-edge", "none"];
     let rim = ["--base", "rim", "--within", "r.geojson"];
-    let row = of(&folder, &[&words[..], &rim].concat())[0].clone();
+    let row = of(&folder, &[&words[..], &rim].concat())["rows"][0].clone();
     for number in ["cut", "fill", "cut_area", "fill_area"] {
         assert_eq!(row[number], 0.0, "{row}");
     }
