@@ -420,7 +420,7 @@ impl Surface {
             let cells = run::color_relief(product, &options, context)?;
             match format.content {
                 Content::Picture => cells.write_picture(target, context),
-                _ => cells.write(target, Overviews::None, context).map(drop),
+                _ => cells.write_with(target, Overviews::None, context).map(drop),
             }
         })
     }
@@ -608,7 +608,7 @@ pub(crate) fn write_cells(
         if is_picture {
             cells.write_picture(target, context)
         } else {
-            cells.write(target, overviews, context).map(drop)
+            cells.write_with(target, overviews, context).map(drop)
         }
     })
 }

@@ -65,7 +65,7 @@ pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<Exit> {
             _ => drop(
                 product
                     .cells()
-                    .write(file, options.frame.overviews, &context)?,
+                    .write_with(file, options.frame.overviews, &context)?,
             ),
         }
     }

@@ -538,7 +538,15 @@ impl CellProduct<'_> {
     ///
     /// # Errors
     /// If the file cannot be written, or the run is canceled.
-    pub fn write(
+    pub fn write(&self, target: Destination, context: &Context) -> Result<RasterSummary> {
+        self.write_with(target, Overviews::Auto, context)
+    }
+
+    /// Like [`write`](Self::write), but with these overviews.
+    ///
+    /// # Errors
+    /// Those of [`write`](Self::write).
+    pub fn write_with(
         &self,
         target: Destination,
         overviews: Overviews,

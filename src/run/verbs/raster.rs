@@ -64,7 +64,7 @@ pub(super) fn write_drawn(
         if is_picture(target) {
             cells.write_picture(destination, context)?;
         } else {
-            cells.write(destination, overviews, context)?;
+            cells.write_with(destination, overviews, context)?;
         }
     }
     Ok(Summary::Shades)
@@ -88,7 +88,7 @@ pub(super) fn write_numbers(
         valid: 0,
     };
     for target in &outputs.targets {
-        written = cells.write(target.within(&outputs.set), overviews, context)?;
+        written = cells.write_with(target.within(&outputs.set), overviews, context)?;
     }
     Ok(written)
 }
