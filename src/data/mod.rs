@@ -70,8 +70,8 @@ pub use points::{PointBatch, PointFlags, PointInfo, PointSink, PointSource, Poin
 pub use profile::{LinePoint, Profile, Profiles, Station, Stretch};
 pub use ramp::{ColorMatch, ColorRamp, ColorStop, Colors, Rgba, StopAt};
 pub use returns::Return;
-pub(crate) use shape::{doubled_area, oriented, polygons};
 pub use shape::{Column, Layer, Shape, ShapeKind};
+pub(crate) use shape::{doubled_area, oriented, polygons};
 pub use surface::{BaseFace, Census, EdgeKind, Face, FaceAcross, LineEdges, Surface};
 pub(crate) use surface::{across, corners, faces, faces_under, map_batches};
 pub use surface_facts::SurfaceFacts;

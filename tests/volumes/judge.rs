@@ -6,7 +6,8 @@ use dashu_ratio::RBig;
 
 type Exact = [RBig; 2];
 
-/// Cut, fill, and their areas, as [`breakline::terrain::Volume`] has them.
+/// Cut, fill, and their areas, as [`breakline::terrain::Volume`] has them; the areas are those where
+/// heights differ by more than is asked for.
 #[derive(Debug, Default)]
 pub(crate) struct Judged {
     pub(crate) volumes: [RBig; 2],
@@ -14,7 +15,7 @@ pub(crate) struct Judged {
     pub(crate) common: RBig,
 }
 
-pub(crate) fn judge(a: &dyn Surface, b: &dyn Surface) -> Judged {
+pub(crate) fn judge(a: &dyn Surface, b: &dyn Surface, least: &RBig) -> Judged {
     let mut sum = Judged::default();
     let others = triangles(b);
     for one in triangles(a) {
@@ -28,11 +29,11 @@ pub(crate) fn judge(a: &dyn Surface, b: &dyn Surface) -> Judged {
             sum.common += area(&polygon);
             let cut = kept(&polygon, above);
             sum.volumes[0] += integral(&cut, above);
-            sum.areas[0] += area_of(&cut, &above);
+            sum.areas[0] += area(&kept(&polygon, |p| above(p) - least));
             let below = |p: &Exact| -above(p);
             let fill = kept(&polygon, below);
             sum.volumes[1] += integral(&fill, below);
-            sum.areas[1] += area_of(&fill, &below);
+            sum.areas[1] += area(&kept(&polygon, |p| below(p) - least));
         }
     }
     sum
@@ -96,14 +97,6 @@ fn fan(polygon: &[Exact]) -> impl Iterator<Item = ([&Exact; 3], RBig)> {
 
 fn area(polygon: &[Exact]) -> RBig {
     fan(polygon).fold(RBig::ZERO, |sum, (_, area)| sum + area)
-}
-
-/// The area of a polygon on which a function is positive but on its border; 0 if it is 0 on all.
-fn area_of(polygon: &[Exact], of: &impl Fn(&Exact) -> RBig) -> RBig {
-    if polygon.iter().all(|p| of(p) == RBig::ZERO) {
-        return RBig::ZERO;
-    }
-    area(polygon)
 }
 
 fn integral(polygon: &[Exact], of: impl Fn(&Exact) -> RBig) -> RBig {

@@ -12,7 +12,8 @@ use crate::io::bytes::watch::bytes_of;
 use crate::io::codec::geotiff::CellFormat;
 use crate::io::codec::las::{Detail, Packing, Rounding};
 use crate::io::codec::{
-    dxf, geojson, geotiff, gpkg, las, obj, off, ply, png, shapefile, stl, tetgen, text, tin, triangle,
+    dxf, geojson, geotiff, gpkg, las, obj, off, ply, png, shapefile, stl, tetgen, text, tin,
+    triangle,
 };
 
 const NOT_WRITTEN: Writers = Writers {

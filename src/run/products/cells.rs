@@ -283,12 +283,15 @@ fn heights<'a>(
     Ok((Box::new(dem.with_method(method)?), Some(surface)))
 }
 
+/// Gradients of faces, and the surface that they are of, if it is in one piece.
+type Gradients<'a> = (Box<dyn GradientSource + 'a>, Option<&'a dyn Surface>);
+
 /// Returns the gradients of the faces of a surface.
 fn gradients<'a>(
     product: &'a SurfaceProduct,
     frame: &FrameOptions,
     journal: &Journal,
-) -> Result<(Box<dyn GradientSource + 'a>, Option<&'a dyn Surface>)> {
+) -> Result<Gradients<'a>> {
     journal.context.check()?;
     if let Model::Parts(parts) = &product.model {
         return Ok((

@@ -235,8 +235,9 @@ impl<T: Number> Clipped<T> {
             to.iter().for_each(|d| length = length.max(d.value().abs()));
             before = to;
         }
-        // (Not a number either.)
-        !(area.value() > 2.0 * length * width)
+        let is_wide = area.value() > 2.0 * length * width;
+        // Also if it is not a number.
+        !is_wide
     }
 
     /// Appends the corners with their heights.

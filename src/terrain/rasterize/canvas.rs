@@ -217,7 +217,7 @@ mod tests {
                 .unwrap();
 
             let mut found = vec![f32::NAN; expected.len()];
-            let mut canvases = [0, 1].map(|_| Canvas::new(frame).unwrap());
+            let mut canvases: [Canvas<f32>; 2] = [0, 1].map(|_| Canvas::new(frame).unwrap());
             for face in 0..tin.face_count() as u32 {
                 let Some(corners) = tin.triangle(face) else {
                     continue;
@@ -235,7 +235,7 @@ mod tests {
                     column, row, width, ..
                 } = block.window;
                 for (i, &height) in block
-                    .heights
+                    .values
                     .iter()
                     .enumerate()
                     .filter(|(_, height)| !height.is_nan())

@@ -244,7 +244,9 @@ fn shapes(geometry: &Geometry, depth: usize, into: &mut Vec<Shape>) -> Result<()
         Type::wkbLineString | Type::wkbLinearRing => Shape::Lines(vec![vertices(geometry)]),
         Type::wkbMultiLineString => Shape::Lines(members().map(|part| vertices(&part)).collect()),
         Type::wkbPolygon | Type::wkbTriangle => Shape::Polygon(oriented(parts(geometry))),
-        Type::wkbMultiPolygon => Shape::Polygon(members().flat_map(|part| oriented(parts(&part))).collect()),
+        Type::wkbMultiPolygon => {
+            Shape::Polygon(members().flat_map(|part| oriented(parts(&part))).collect())
+        }
         Type::wkbTIN | Type::wkbPolyhedralSurface => {
             Shape::of_faces(members().map(|part| parts(&part)).collect())
         }
