@@ -7,6 +7,7 @@
 //! | verb | request | function | product |
 //! |---|---|---|---|
 //! | build or read a surface | [`SurfaceRequest`] | [`surface()`], [`triangles`] | [`SurfaceProduct`] |
+//! | the same, in files if it is larger than memory | [`SurfaceRequest`] | [`open_surface`] | [`SurfaceProduct`] |
 //! | simplify it, also a raster | [`SimplifyRule`](crate::terrain::SimplifyRule) | [`simplify`] | [`SurfaceProduct`] |
 //! | write it as a mesh | | [`write_mesh`] | |
 //! | write what a verb makes of it, in one piece or in tiles | [`WriteRequest`] | [`write()`] | [`WriteReport`] |
@@ -78,6 +79,7 @@
 mod context;
 mod job;
 mod lines;
+mod opened;
 mod products;
 mod request;
 mod sources;
@@ -102,6 +104,7 @@ pub use job::{
 };
 pub use lines::crossings::LineNames;
 pub use lines::notes::LineInput;
+pub use opened::open_surface;
 pub use products::accuracy::{
     AccuracyOptions, AccuracyProduct, CheckpointRow, CheckpointSet, ClassDecision, HeightMeasure,
     SetAccuracy, accuracy,

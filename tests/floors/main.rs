@@ -63,6 +63,7 @@ const RUN: Floors = &[
     &["triangulate", "verbs"],
     &["job", "space"],
     &["write"],
+    &["opened"],
 ];
 
 /// The binding for Python: the library, and the package around it.

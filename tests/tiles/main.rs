@@ -14,6 +14,7 @@ mod equality;
 mod interruption;
 mod judge;
 mod notices;
+mod opened;
 mod parts;
 mod real;
 mod removal;

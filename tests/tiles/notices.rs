@@ -24,6 +24,10 @@ use super::layer;
 const NOT_IN_TILES: &[(&str, &str)] = &[
     ("LittleMemory", "tiles are chosen to fit into memory"),
     ("MemoryUnused", "tiles cannot be made"),
+    (
+        "MadeInFiles",
+        "of verbs that ask a surface, such as `volume`",
+    ),
     ("OutputMayNotFit", "depends on the disk"),
     ("Triangulated", "a time; each task has its own"),
     ("Uncertain", "tiles use all points, whatever the bounds"),

@@ -20,7 +20,12 @@ pub(crate) fn run(args: &AccuracyArgs, console: &Console) -> Result<Exit> {
     let output = pair::output(args.output.iter().chain(&args.histogram), args.overwrite);
     let outputs = outputs::resolve(&output, TABLES, &read)?;
     let context = console.context();
-    let mut surface = run::surface_for(args.method.into(), &plan.request, &context)?;
+    let mut surface = run::open_surface(
+        &plan.request,
+        args.method.into(),
+        args.memory.memory,
+        &context,
+    )?;
     print_surface(&SurfaceReport::take(&mut surface)?, console);
     let options = AccuracyOptions {
         read: args.surface.read.options(),

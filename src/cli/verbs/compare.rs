@@ -51,6 +51,7 @@ pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<Exit> {
         &plans,
         ["surface", "minus"],
         &args.surface,
+        (options.method, &args.memory),
         console,
         &context,
     )?;

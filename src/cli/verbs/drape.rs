@@ -16,6 +16,7 @@ use crate::data::{Layer, Shape};
 use crate::error::Result;
 use crate::io::formats::Product;
 use crate::run::{self, DrapeOptions, DrapeProduct, Input, SurfaceReport};
+use crate::terrain::Method;
 
 /// Drapes lines over a surface.
 pub(crate) fn run(args: &DrapeArgs, console: &Console) -> Result<Exit> {
@@ -30,7 +31,8 @@ pub(crate) fn run(args: &DrapeArgs, console: &Console) -> Result<Exit> {
         &read,
     )?;
     let context = console.context();
-    let mut surface = run::surface(&plan.request, &context)?;
+    let memory = args.memory.memory;
+    let mut surface = run::open_surface(&plan.request, Method::Linear, memory, &context)?;
     print_surface(&SurfaceReport::take(&mut surface)?, console);
     let options = DrapeOptions {
         lines: Input::File(args.lines.clone()),

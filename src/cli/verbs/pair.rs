@@ -2,13 +2,14 @@
 
 use std::path::PathBuf;
 
-use crate::cli::input::args::{OutputArgs, SurfaceArgs};
+use crate::cli::input::args::{MemoryArgs, OutputArgs, SurfaceArgs};
 use crate::cli::input::plan::SurfacePlan;
 use crate::cli::report::console::Console;
 use crate::cli::report::summary::print_surface;
 use crate::crs::Crs;
 use crate::error::{Error, Result};
-use crate::run::{self, Context, SurfaceProduct, SurfaceReport};
+use crate::run::{self, Context, Source, SurfaceProduct, SurfaceReport};
+use crate::terrain::Method;
 
 /// Returns the files that are read for surfaces.
 pub(super) fn files(plans: &[SurfacePlan]) -> impl Iterator<Item = PathBuf> + '_ {
@@ -38,17 +39,28 @@ pub(super) fn assigned(plan: &SurfacePlan) -> Option<Crs> {
     }
 }
 
-/// Builds or reads each surface, and prints its role and what it is.
+/// Builds or reads each surface for heights by a method, and prints its role and what it is. The
+/// memory is shared by those that are built.
 pub(super) fn read(
     plans: &[SurfacePlan],
     roles: impl IntoIterator<Item = &'static str>,
     args: &SurfaceArgs,
+    (method, memory): (Method, &MemoryArgs),
     console: &Console,
     context: &Context,
 ) -> Result<Vec<SurfaceProduct>> {
+    let is_built = |plan: &SurfacePlan| matches!(plan.request.source, Source::Points(_));
+    let built = plans.iter().filter(|plan| is_built(plan)).count() as u64;
+    let memory_of = |plan: &SurfacePlan| match built {
+        0 => memory.memory,
+        _ => memory
+            .memory
+            .filter(|_| is_built(plan))
+            .map(|all| all / built),
+    };
     let named = roles.into_iter().zip(&args.inputs);
     let each = plans.iter().zip(named).map(|(plan, (role, input))| {
-        let mut product = run::surface(&plan.request, context)?;
+        let mut product = run::open_surface(&plan.request, method, memory_of(plan), context)?;
         console.line(format_args!("{role:<11} {}", input.display()));
         print_surface(&SurfaceReport::take(&mut product)?, console);
         Ok(product)

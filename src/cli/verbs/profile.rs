@@ -14,6 +14,7 @@ use crate::io::is_standard_output;
 use crate::io::profiles::PlotOptions;
 use crate::run::targets::PROFILES;
 use crate::run::{self, Input, ProfileOptions, SectionOptions, SectionStations};
+use crate::terrain::Method;
 
 /// Computes heights along lines, or along sections across them.
 pub(crate) fn run(args: &ProfileArgs, console: &Console) -> Result<Exit> {
@@ -33,7 +34,8 @@ pub(crate) fn run(args: &ProfileArgs, console: &Console) -> Result<Exit> {
     }
     let context = console.context();
     let roles = std::iter::repeat("surface");
-    let surfaces = pair::read(&plans, roles, &args.surface, console, &context)?;
+    let how = (Method::Linear, &args.memory);
+    let surfaces = pair::read(&plans, roles, &args.surface, how, console, &context)?;
     let options = ProfileOptions {
         along: Input::File(args.along.clone()),
         assign: plans.first().and_then(pair::assigned),

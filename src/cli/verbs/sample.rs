@@ -44,7 +44,12 @@ pub(crate) fn run(args: &SampleArgs, console: &Console) -> Result<Exit> {
     let output = pair::output(&args.output, args.overwrite);
     let outputs = outputs::resolve(&output, FORMATS, &read)?;
     let context = console.context();
-    let mut surface = run::surface_for(args.method.into(), &plan.request, &context)?;
+    let mut surface = run::open_surface(
+        &plan.request,
+        args.method.into(),
+        args.memory.memory,
+        &context,
+    )?;
     print_surface(&SurfaceReport::take(&mut surface)?, console);
     let options = SampleOptions {
         add: added(args)?,

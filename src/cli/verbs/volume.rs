@@ -13,6 +13,7 @@ use crate::cli::report::written::commit;
 use crate::error::{Error, Result};
 use crate::run::targets::{TABLES, add_table};
 use crate::run::{self, Bulking, Input, VolumeBase, VolumeOptions};
+use crate::terrain::Method;
 
 /// Computes cut and fill between two surfaces, or above levels.
 pub(crate) fn run(args: &VolumeArgs, console: &Console) -> Result<Exit> {
@@ -27,6 +28,7 @@ pub(crate) fn run(args: &VolumeArgs, console: &Console) -> Result<Exit> {
         &plans,
         ["surface", "base"],
         &args.surface,
+        (Method::Linear, &args.memory),
         console,
         &context,
     )?;

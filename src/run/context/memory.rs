@@ -54,7 +54,7 @@ pub(crate) fn require_for_points(count: usize) -> Result<()> {
             Setting::Class,
             "); or write the surface in parts (.tins) with ",
             Command::Tin,
-            ", which works in tiles: heights at points, volumes, rasters and contours are computed from part to part"
+            ", which works in tiles: heights at points and along lines, volumes, rasters and contours are computed from part to part"
         ])
     })
 }
@@ -153,7 +153,7 @@ pub(crate) fn require_for_parts(triangles: usize) -> Result<()> {
     )
     .map_err(|e| {
         e.cure(
-            "rasters with linear heights, contours, heights at positions and volumes need no mesh",
+            "rasters with linear heights, contours, heights at positions and along lines, and volumes need no mesh",
         )
     })
 }

@@ -61,6 +61,13 @@ pub enum Notice {
     /// The memory that was given makes no difference, since tiles cannot be made; with the reason,
     /// and what to do.
     MemoryUnused(Wording),
+    /// Points would need more memory than there is to use: their TIN is made in files first.
+    MadeInFiles {
+        /// The memory to use, in bytes.
+        memory: u64,
+        /// The folder of the files, which is removed with the surface.
+        folder: PathBuf,
+    },
     /// The outputs may not fit on a disk.
     OutputMayNotFit {
         /// About how many bytes they take before they are compressed.
@@ -512,6 +519,7 @@ impl Notice {
             | Notice::PointsWithoutClassUsed(_)
             | Notice::NoiseUnused
             | Notice::MemoryUnused(_)
+            | Notice::MadeInFiles { .. }
             | Notice::Reassigned { .. }
             | Notice::NoSystem
             | Notice::DifferentUnits(..)

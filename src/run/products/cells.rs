@@ -268,16 +268,13 @@ fn heights<'a>(
     if let Some(notice) = product.unread_by(method) {
         journal.add(notice);
     }
+    let frame = frame_over(product, frame, journal)?;
     if let Model::Parts(parts) = &product.model
         && method == Method::Linear
     {
-        return Ok((
-            Box::new(cells_of_parts(product, parts, frame, journal)?),
-            None,
-        ));
+        return Ok((Box::new(parts.dem(frame)?), None));
     }
     let surface = product.triangles()?;
-    let frame = frame::choose(frame, surface, product.extent(), journal)?;
     let dem = Dem::new(surface, frame)?;
     journal.context.check()?;
     Ok((Box::new(dem.with_method(method)?), Some(surface)))
@@ -293,27 +290,32 @@ fn gradients<'a>(
     journal: &Journal,
 ) -> Result<Gradients<'a>> {
     journal.context.check()?;
+    let frame = frame_over(product, frame, journal)?;
     if let Model::Parts(parts) = &product.model {
-        return Ok((
-            Box::new(cells_of_parts(product, parts, frame, journal)?),
-            None,
-        ));
+        return Ok((Box::new(parts.dem(frame)?), None));
     }
     let surface = product.triangles()?;
-    let frame = frame::choose(frame, surface, product.extent(), journal)?;
     Ok((Box::new(GradientMap::new(surface, frame)?), Some(surface)))
 }
 
-/// Returns the cells of a surface in parts.
-fn cells_of_parts<'a>(
+/// Chooses the frame of a raster over triangles. Those of a TIN in parts are not joined.
+///
+/// # Errors
+/// Those of [`frame::choose`], and if the surface is a raster.
+pub(super) fn frame_over(
     product: &SurfaceProduct,
-    parts: &'a TinParts,
-    frame: &FrameOptions,
+    options: &FrameOptions,
     journal: &Journal,
-) -> Result<DemOfParts<'a, CompactTin<Mapped>>> {
-    let chosen = frame::over_extent(frame, product.extent(), product.crs(), journal)?;
-    frame::require_filled(frame, &chosen, &product.extent(), || parts.index().area)?;
-    parts.dem(chosen)
+) -> Result<Frame> {
+    let extent = product.extent();
+    match &product.model {
+        Model::Parts(parts) => {
+            let frame = frame::over_extent(options, extent, product.crs(), journal)?;
+            frame::require_filled(options, &frame, &extent, || parts.index().area)?;
+            Ok(frame)
+        }
+        _ => frame::choose(options, product.triangles()?, extent, journal),
+    }
 }
 
 /// Returns an error if options are given that only a TIN has a use for.

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::cells::{CellProduct, refuse_options};
+use super::cells::{CellProduct, frame_over, refuse_options};
 use super::changed::{AreaOptions, ChangedAreas, changed_areas};
 use super::frame::{self, FrameOptions};
 use super::surface::{Model, SurfaceProduct};
@@ -110,11 +110,8 @@ pub fn compare(
             )?)
         })
     })?;
-    for surface in [first, second] {
-        if let Ok(triangles) = surface.triangles() {
-            triangles.ensure_intact()?;
-        }
-    }
+    first.ensure_intact()?;
+    second.ensure_intact()?;
     let known = difference.values.iter().copied().filter(|d| !d.is_nan());
     let Some(statistics) = ErrorStatistics::of(&known.collect::<Vec<f64>>()) else {
         return Err(no_cell(surfaces, &options.names));
@@ -171,7 +168,7 @@ fn cells_of(
     }
     match raster_frame(second).filter(|_| !options.frame.is_chosen()) {
         Some(frame) => Ok(frame),
-        None => frame::choose(&options.frame, first.triangles()?, first.extent(), journal),
+        None => frame_over(first, &options.frame, journal),
     }
 }
 

@@ -103,7 +103,7 @@ pub(crate) fn follow(
     step: Option<(f64, Vertices)>,
     context: &Context,
 ) -> Result<Vec<Vec<Stretch>>> {
-    product.with_faces(context, |faces| {
+    product.with_linked_faces(context, |faces| {
         let work = context.start(Stage::FollowingLines, Size::Items(lines.len() as u64))?;
         let polled = Watched::polled(faces, context)?;
         let locator = Locator::prepared(faces, &polled)?;

@@ -189,6 +189,19 @@ impl SurfaceProduct {
         }
     }
 
+    /// Like [`with_faces`](Self::with_faces), but a surface in parts stays in its files: a vertex
+    /// that parts share has a number in each of them.
+    pub(super) fn with_linked_faces<T>(
+        &self,
+        context: &Context,
+        take: impl FnOnce(&dyn Surface) -> Result<T>,
+    ) -> Result<T> {
+        match &self.model {
+            Model::Parts(parts) => take(&parts.linked(context)?),
+            _ => self.with_faces(context, take),
+        }
+    }
+
     /// Calls a function with the faces by which heights of a method are computed at positions:
     /// linear ones need no links.
     pub(super) fn with_faces_for<T>(
@@ -200,6 +213,15 @@ impl SurfaceProduct {
         match method {
             Method::Linear => self.with_unlinked_faces(context, take),
             _ => self.with_faces(context, take),
+        }
+    }
+
+    /// Returns an error if something in the triangles was found damaged while they were used.
+    /// Parts are asked where they are used.
+    pub(super) fn ensure_intact(&self) -> Result<()> {
+        match &self.model {
+            Model::Tin(_) | Model::Mesh(_) | Model::Compact(_) => self.triangles()?.ensure_intact(),
+            Model::Parts(_) | Model::Raster(_) | Model::RasterFile(_) => Ok(()),
         }
     }
 

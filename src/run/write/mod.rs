@@ -109,6 +109,35 @@ pub fn write(
     }
 }
 
+/// Like [`write()`] in tiles, for files that are needed only as long as this process runs: nobody
+/// goes on with the job, and its folder is that of the files.
+pub(super) fn for_a_while(
+    request: &WriteRequest,
+    targets: &Targets,
+    options: &TileOptions,
+    context: &Context,
+) -> Result<WriteReport> {
+    Prepared::new(request, targets)?
+        .in_tiles()?
+        .anew(options, Caller::ForAWhile, context)
+}
+
+/// Returns true if a request would need more than `memory`, half of the free memory if it is
+/// `None`, and can be worked on in tiles.
+pub(super) fn is_larger(request: &WriteRequest, memory: Option<u64>, context: &Context) -> bool {
+    // Building in one piece reports what is wrong with files.
+    needs_tiles(request, memory, context)
+        .unwrap_or_else(|error| without_tiles(memory, &error, context))
+}
+
+/// Returns false: what is worked on has no tiles. A notice says why, if memory was given.
+pub(super) fn without_tiles(memory: Option<u64>, why: &Error, context: &Context) -> bool {
+    if memory.is_some() {
+        context.monitor.notice(&Notice::MemoryUnused(stated(why)));
+    }
+    false
+}
+
 /// Plans a job for a command and creates it in a folder. Its tasks can then be done one by one, by
 /// [`run_task`], or all that are left, by [`run_job`]. The outputs are checked now.
 ///
@@ -407,22 +436,15 @@ impl<'a> Prepared<'a> {
 
     /// Returns true if the request has to be worked on in tiles.
     fn needs_tiles(&self, memory: Option<u64>, context: &Context) -> bool {
-        let unused = |why: Wording| {
-            if memory.is_some() {
-                context.monitor.notice(&Notice::MemoryUnused(why));
-            }
-            false
-        };
         match (&self.use_of_tiles, self.refused()) {
             (TileUse::Always, _) => true,
             (TileUse::Never(error), _) => {
                 let cure = error.cure_text().map(|cure| wording![": ", cure.clone()]);
-                unused(wording![stated(error), cure.unwrap_or_default()])
+                let why = wording![stated(error), cure.unwrap_or_default()];
+                without_tiles(memory, &Error::usage(why), context)
             }
-            (TileUse::Optional, Some(error)) => unused(stated(&error)),
-            // Building in one piece reports what is wrong with files.
-            (TileUse::Optional, None) => needs_tiles(self.request, memory, context)
-                .unwrap_or_else(|error| unused(stated(&error))),
+            (TileUse::Optional, Some(error)) => without_tiles(memory, &error, context),
+            (TileUse::Optional, None) => is_larger(self.request, memory, context),
         }
     }
 
@@ -633,7 +655,7 @@ impl<'a> Prepared<'a> {
         let mut summary = request
             .verb
             .write_tiles(&job.tiles(&report), &outputs, context)?;
-        let is_kept = caller != Caller::Request || report.skipped > 0;
+        let is_kept = !caller.ends_with_outputs() || report.skipped > 0;
         if is_kept {
             // Without the lock, the output that is found may be that of another process.
             lock.confirm()?;
@@ -667,6 +689,8 @@ impl<'a> Prepared<'a> {
 enum Caller {
     /// A request; the folder goes once the outputs are written, unless files were skipped.
     Request,
+    /// A request for files that are gone when this process ends, and the folder with them.
+    ForAWhile,
     /// A request that has named the folder: it stays.
     RequestInFolder,
     /// A request that comes again when inputs have changed. The folder stays.
@@ -687,14 +711,19 @@ impl Caller {
         }
     }
 
+    /// Returns true if nothing of the job is needed once its outputs are written.
+    fn ends_with_outputs(self) -> bool {
+        matches!(self, Caller::Request | Caller::ForAWhile)
+    }
+
     /// Returns what goes on with a job, and writes what this caller wants; `None` if that is said
-    /// elsewhere.
+    /// elsewhere, or nobody can go on.
     fn cure(self, job: &Job) -> Option<Term> {
         match self {
             Caller::Request | Caller::RequestInFolder => Some(Setting::Resume.on()),
             Caller::Update => Some(Setting::Update.on()),
             Caller::Folder => Some(job.run_command()),
-            Caller::Worker => None,
+            Caller::ForAWhile | Caller::Worker => None,
         }
     }
 }

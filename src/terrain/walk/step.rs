@@ -309,7 +309,6 @@ impl<'a> Steps<'a> {
         corner: usize,
         segment: &Segment,
     ) -> Option<Toward> {
-        let vertex = self.surface.face(first)?[corner];
         // Counter-clockwise, and from the first face clockwise if that ends at the rim.
         for turn in [1, 2] {
             let (mut face, mut k) = (first, corner);
@@ -318,14 +317,15 @@ impl<'a> Steps<'a> {
                     return Some(found);
                 }
                 self.count()?;
-                let Some(next) = self.surface.neighbor(face, (k + turn) % 3) else {
+                let Some(next) = self.surface.across(face, (k + turn) % 3) else {
                     break;
                 };
-                if next == first {
+                if next.number == first {
                     return None;
                 }
-                k = self.surface.face(next)?.iter().position(|&v| v == vertex)?;
-                face = next;
+                // Not by its number, which need not be the same in faces of different files.
+                k = (next.corner + turn) % 3;
+                face = next.number;
             }
         }
         None

@@ -3,6 +3,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::surface::SurfaceArgs;
+use super::tiles::MemoryArgs;
 use super::verbs::MethodArg;
 use crate::run::HeightMeasure;
 
@@ -93,4 +94,7 @@ pub(crate) struct AccuracyArgs {
 
     #[command(flatten)]
     pub(crate) surface: SurfaceArgs,
+
+    #[command(flatten)]
+    pub(crate) memory: MemoryArgs,
 }

@@ -4,6 +4,7 @@ use clap::Args;
 
 use super::parse::{not_negative, positive};
 use super::surface::SurfaceArgs;
+use super::tiles::MemoryArgs;
 use super::verbs::{FrameArgs, MethodArg};
 use crate::run::CompareOptions;
 
@@ -74,4 +75,7 @@ pub(crate) struct CompareArgs {
 
     #[command(flatten)]
     pub(crate) surface: SurfaceArgs,
+
+    #[command(flatten)]
+    pub(crate) memory: MemoryArgs,
 }

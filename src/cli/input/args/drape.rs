@@ -4,6 +4,7 @@ use clap::Args;
 
 use super::parse::positive;
 use super::surface::SurfaceArgs;
+use super::tiles::MemoryArgs;
 use super::verbs::OutputArgs;
 
 /// Give lines the heights of a surface, at every edge that they cross, or by a step
@@ -45,4 +46,7 @@ pub(crate) struct DrapeArgs {
 
     #[command(flatten)]
     pub(crate) surface: SurfaceArgs,
+
+    #[command(flatten)]
+    pub(crate) memory: MemoryArgs,
 }

@@ -43,7 +43,7 @@ pub(crate) use sample::SampleArgs;
 pub(crate) use surface::{CrossingZArg, DuplicatesArg, OnCrossingArg, SurfaceArgs};
 pub(crate) use switches::expand_switches;
 pub(crate) use systems::SystemArgs;
-pub(crate) use tiles::TileArgs;
+pub(crate) use tiles::{MemoryArgs, TileArgs};
 pub(crate) use verbs::{
     CheckArgs, ContourArgs, DemArgs, DemoArgs, DescribeArgs, FrameArgs, HillshadeArgs, InfoArgs,
     LimitArgs, OutputArgs, PointsArgs, SimplifyArgs, TinArgs, TriangulateArgs,

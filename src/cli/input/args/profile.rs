@@ -4,6 +4,7 @@ use clap::Args;
 
 use super::parse::{finite, not_negative, positive, station};
 use super::surface::SurfaceArgs;
+use super::tiles::MemoryArgs;
 use crate::run::StationFormat;
 
 /// Heights of surfaces along lines, or cross-sections of them, as a table, a plot or a drawing
@@ -101,4 +102,7 @@ pub(crate) struct ProfileArgs {
 
     #[command(flatten)]
     pub(crate) surface: SurfaceArgs,
+
+    #[command(flatten)]
+    pub(crate) memory: MemoryArgs,
 }

@@ -3,6 +3,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::surface::SurfaceArgs;
+use super::tiles::MemoryArgs;
 use super::verbs::MethodArg;
 use crate::run::SampledField;
 
@@ -76,6 +77,9 @@ pub(crate) struct SampleArgs {
 
     #[command(flatten)]
     pub(crate) surface: SurfaceArgs,
+
+    #[command(flatten)]
+    pub(crate) memory: MemoryArgs,
 }
 
 /// What is added to a point.

@@ -4,6 +4,7 @@ use clap::{Args, ValueEnum};
 
 use super::parse::{LevelSteps, finite, positive};
 use super::surface::SurfaceArgs;
+use super::tiles::MemoryArgs;
 use crate::run::VolumeUnit;
 
 /// Cut and fill between two surfaces, or above a level, exact on the triangles
@@ -90,6 +91,9 @@ pub(crate) struct VolumeArgs {
 
     #[command(flatten)]
     pub(crate) surface: SurfaceArgs,
+
+    #[command(flatten)]
+    pub(crate) memory: MemoryArgs,
 }
 
 /// What may be a base besides a surface and a level.

@@ -1,4 +1,5 @@
-//! Hidden files that become outputs, and the list of all of them.
+//! Hidden files that become outputs, folders of files that are needed for a while, and the list of
+//! all of them.
 
 use std::fs::File;
 use std::io;
@@ -13,27 +14,51 @@ const PREFIX: &str = ".breakline-";
 /// What the names of files that are set aside contain.
 const BACKUP: &str = ".old";
 
+/// How often a folder is removed again into which other threads still write.
+const ATTEMPTS: usize = 1000;
+
 /// All temporary files of the process. Locked while one is created and while a set is renamed.
 static ALL: Mutex<Vec<Listed>> = Mutex::new(Vec::new());
 
-/// A temporary file of the process.
+/// A temporary file or folder of the process.
 #[derive(Debug)]
 struct Listed {
     path: PathBuf,
-    /// What it contains once it is written, if other processes may put files of their own in its
-    /// place.
-    text: Option<String>,
+    what: What,
+}
+
+/// What is temporary.
+#[derive(Debug)]
+enum What {
+    /// A file that no other process knows.
+    File,
+    /// A file in whose place other processes may put files of their own, with what it contains once
+    /// it is written.
+    Shared(String),
+    /// A folder, with all that is in it.
+    Folder,
 }
 
 impl Listed {
-    /// Removes the file, unless it is that of another process now.
+    /// Removes the file, unless it is that of another process now, or the folder.
     fn remove(&self) {
+        let path = &self.path;
+        // It may not be complete.
         let is_own = |text: &String| {
-            // It may not be complete.
-            std::fs::read(&self.path).is_ok_and(|found| text.as_bytes().starts_with(&found))
+            std::fs::read(path).is_ok_and(|found| text.as_bytes().starts_with(&found))
         };
-        if self.text.as_ref().is_none_or(is_own) {
-            let _ = std::fs::remove_file(&self.path);
+        match &self.what {
+            What::Shared(text) if !is_own(text) => {}
+            What::File | What::Shared(_) => drop(std::fs::remove_file(path)),
+            // Not empty at its removal while other threads write into it.
+            What::Folder => {
+                for _ in 0..ATTEMPTS {
+                    match std::fs::remove_dir_all(path) {
+                        Err(error) if error.kind() == io::ErrorKind::DirectoryNotEmpty => {}
+                        _ => break,
+                    }
+                }
+            }
         }
     }
 }
@@ -59,7 +84,8 @@ impl Renames {
 }
 
 /// A file that is removed when dropped, or when the program ends early, unless it was renamed: a
-/// hidden one that becomes an output, or one that is there only as long as something is done.
+/// hidden one that becomes an output, or one that is there only as long as something is done. Or a
+/// folder of such files.
 #[derive(Debug)]
 pub(crate) struct Temporary {
     path: PathBuf,
@@ -82,7 +108,7 @@ impl Temporary {
         let path = path.keep().map_err(|e| e.error)?;
         all.push(Listed {
             path: path.clone(),
-            text: None,
+            what: What::File,
         });
         Ok((file, Temporary { path }))
     }
@@ -99,12 +125,27 @@ impl Temporary {
         let path = path.to_path_buf();
         all.push(Listed {
             path: path.clone(),
-            text: Some(text.to_owned()),
+            what: What::Shared(text.to_owned()),
         });
         Ok((file, Temporary { path }))
     }
 
-    /// Returns the path of the file.
+    /// Creates a folder in another one, for files that are needed for a while. Only this user can
+    /// read it.
+    pub(crate) fn folder_in(folder: &Path) -> io::Result<Self> {
+        let mut all = all();
+        let path = tempfile::Builder::new()
+            .prefix(PREFIX.trim_start_matches('.'))
+            .tempdir_in(folder)?
+            .keep();
+        all.push(Listed {
+            path: path.clone(),
+            what: What::Folder,
+        });
+        Ok(Temporary { path })
+    }
+
+    /// Returns the path of the file or the folder.
     pub(crate) fn path(&self) -> &Path {
         &self.path
     }

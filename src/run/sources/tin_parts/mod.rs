@@ -4,6 +4,7 @@ mod contours;
 mod heights;
 mod join;
 mod joined;
+mod seams;
 mod unjoined;
 mod written;
 
@@ -18,18 +19,22 @@ use std::sync::OnceLock;
 use crate::crs::Crs;
 use crate::data::{Bounds, Frame, SurfaceFacts};
 use crate::error::{Command, Error, Result, wording};
+use crate::io::Temporary;
 use crate::io::mapped::{self, Mapped};
 use crate::terrain::{CompactTin, DemOfParts, TinIndex};
 
 /// A surface in parts, each of which is a TIN in a file. [`TinIndex`] says which.
 ///
-/// Rasters with linear heights, contours, heights at positions and volumes are computed from part
-/// to part, and so need not have the surface in memory. For all else the parts are joined.
+/// Rasters with linear heights, contours, heights at positions and along lines, and volumes are
+/// computed where the parts are, and so need not have the surface in memory. For all else the parts
+/// are joined.
 pub struct TinParts {
     path: PathBuf,
     folder: PathBuf,
     index: TinIndex,
     joined: OnceLock<JoinedTin>,
+    /// A folder with all of these files that is removed with this, if nobody else needs them.
+    owned: Option<Temporary>,
     /// Opens a part, for rasters that outlive the call that asks for them.
     open: Box<dyn Fn(usize) -> Result<CompactTin<Mapped>> + Send + Sync>,
 }
@@ -104,6 +109,7 @@ impl TinParts {
             folder,
             index,
             joined: OnceLock::new(),
+            owned: None,
             open,
         })
     }
@@ -126,6 +132,11 @@ impl TinParts {
     /// Returns the counts and the extent that the index states.
     pub fn facts(&self) -> &SurfaceFacts {
         &self.index.facts
+    }
+
+    /// Takes the folder that contains all files of the surface.
+    pub(crate) fn own(&mut self, folder: Temporary) {
+        self.owned = Some(folder);
     }
 
     pub(crate) fn set_crs(&mut self, crs: Option<Crs>) {

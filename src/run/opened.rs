@@ -1,0 +1,110 @@
+//! Surfaces that verbs ask: in memory, or in files if they would not fit.
+
+use std::path::{Path, PathBuf};
+
+use super::context::memory;
+use super::context::notice::Notice;
+use super::context::{Context, Journal};
+use super::job::{NotInTiles, TileOptions};
+use super::products::surface::{Model, SurfaceProduct, SurfaceRequest, surface_for};
+use super::sources::open;
+use super::verbs::targets::Targets;
+use super::verbs::{SurfaceOptions, WriteRequest};
+use super::write::{self, WriteReport, Written, WrittenOf};
+use crate::error::{Error, Result};
+use crate::io::Temporary;
+use crate::terrain::Method;
+
+/// Builds or reads a surface, for heights by a method. Points that would need more than `memory`
+/// bytes, half of the free memory if it is `None`, become a TIN in parts first, in tiles; it is
+/// used in its files, in a folder that is removed with the surface. All verbs have the same
+/// results of it, byte for byte.
+///
+/// The folder is in that which the environment names as `TMPDIR`, else in `/var/tmp`. It takes
+/// about 200 bytes for each point.
+///
+/// # Errors
+/// Those of [`surface_for`] and [`write()`](super::write()), and if the folder cannot be created.
+///
+/// ```
+/// use breakline::run::{self, Context, Model, Source, SurfaceRequest};
+/// use breakline::terrain::Method;
+///
+/// let source = Source::of_files(&["fixtures/valley.laz".into()])?;
+/// let request = SurfaceRequest { source, ..SurfaceRequest::default() };
+/// let surface = run::open_surface(&request, Method::Linear, Some(1_000_000), &Context::default())?;
+/// assert!(matches!(surface.model, Model::Parts(_)));
+/// # Ok::<(), breakline::Error>(())
+/// ```
+pub fn open_surface(
+    request: &SurfaceRequest,
+    method: Method,
+    memory: Option<u64>,
+    context: &Context,
+) -> Result<SurfaceProduct> {
+    let in_parts = WriteRequest::new(request.clone(), SurfaceOptions::default());
+    let is_larger = match method {
+        Method::Linear => write::is_larger(&in_parts, memory, context),
+        _ => write::without_tiles(memory, &NotInTiles::Method.into(), context),
+    };
+    match is_larger {
+        true => in_files(&in_parts, memory, context),
+        false => surface_for(method, request, context),
+    }
+}
+
+/// Writes points as a TIN in parts that is there as long as the result.
+fn in_files(
+    request: &WriteRequest,
+    memory: Option<u64>,
+    context: &Context,
+) -> Result<SurfaceProduct> {
+    let journal = Journal::new(context);
+    let parent = folder_of_large_files();
+    let folder = Temporary::folder_in(&parent).map_err(|e| {
+        Error::from(e)
+            .in_file(&parent)
+            .cure("name a folder for large files with the environment variable TMPDIR")
+    })?;
+    journal.add(Notice::MadeInFiles {
+        memory: memory.unwrap_or_else(memory::half_of_free),
+        folder: folder.path().to_path_buf(),
+    });
+    let index = folder.path().join("surface.tins");
+    let options = TileOptions {
+        memory,
+        ..TileOptions::default()
+    };
+    let report = write::for_a_while(request, &Targets::of(&index), &options, context)?;
+    let mut parts = open::tin_parts(&index).ok_or_else(|| not_there(&index))??;
+    parts.own(folder);
+    let mut notices = journal.take();
+    if let WriteReport::Written(written) = report
+        && let Written {
+            surface: WrittenOf::Tiles { report, .. },
+            ..
+        } = *written
+    {
+        notices.extend(report.notices);
+    }
+    Ok(SurfaceProduct {
+        model: Model::Parts(Box::new(parts)),
+        built: None,
+        notices,
+    })
+}
+
+/// Returns the folder for large files that are needed for a while. `/tmp` may be in memory.
+fn folder_of_large_files() -> PathBuf {
+    let is_named = std::env::var_os("TMPDIR").is_some_and(|name| !name.is_empty());
+    let on_disk = Path::new("/var/tmp");
+    match !is_named && on_disk.is_dir() {
+        true => on_disk.to_path_buf(),
+        false => std::env::temp_dir(),
+    }
+}
+
+#[cold]
+fn not_there(index: &Path) -> Error {
+    Error::other_job("the surface was removed by another process").in_file(index)
+}

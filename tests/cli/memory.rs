@@ -1,0 +1,181 @@
+//! Verbs that ask a surface of points which are larger than the memory.
+
+use std::fmt::Write as _;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use tempfile::TempDir;
+
+use super::{files_of, folder_with};
+
+/// The least memory that can be given.
+const LITTLE: &str = "16MB";
+
+/// More points than have room in it, in two files.
+fn points() -> TempDir {
+    let half = |from: u32| {
+        let mut text = String::new();
+        for i in 0..90_000 {
+            let [x, y] = [from + i % 300, i / 300];
+            writeln!(text, "{x} {y} {}", x * y % 17).unwrap();
+        }
+        text
+    };
+    let line = |text: &str| super::geojson(25832, "LineString", text);
+    folder_with(&[
+        ("tiles/west.xyz", &half(0)),
+        ("tiles/east.xyz", &half(300)),
+        ("at.csv", "x,y\n10.5,20.25\n299.5,7\n599,299\n700,1\n"),
+        ("checks.csv", "x,y,z\n10.5,20.25,8\n299.5,7,9\n50,60,0\n"),
+        ("lines.geojson", &line("[[5.5,3],[420.25,150],[640,151]]")),
+        ("tmp/kept", ""),
+    ])
+}
+
+fn program(folder: &TempDir, words: &str) -> Command {
+    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("breakline"));
+    command
+        .current_dir(folder.path())
+        .env("TMPDIR", folder.path().join("tmp"))
+        .args(words.split(' '))
+        .stdin(Stdio::piped());
+    command
+}
+
+fn run(folder: &TempDir, words: &str) -> (Option<i32>, String, String) {
+    let Output {
+        status,
+        stdout,
+        stderr,
+    } = program(folder, words).output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (status.code(), text(stdout), text(stderr))
+}
+
+#[track_caller]
+fn assert_left_nothing(folder: &TempDir) {
+    assert_eq!(files_of(&folder.path().join("tmp")), ["kept"]);
+}
+
+#[test]
+fn larger_points_are_asked_in_one_command() {
+    let folder = points();
+    for words in [
+        "sample tiles/*.xyz --at at.csv --add height,slope",
+        "accuracy tiles/*.xyz --checkpoints checks.csv --json",
+        "volume tiles/*.xyz --levels 0:16:8 --json",
+        "profile tiles/*.xyz --along lines.geojson --json",
+        "compare tiles/*.xyz tiles/west.xyz --changed 1 --json --resolution 5",
+    ] {
+        let (code, whole, said) = run(&folder, words);
+        assert_eq!(code, Some(0), "{words}: {said}");
+        assert!(
+            whole.len() > 50 && !said.contains("made in files"),
+            "{words}: {said}"
+        );
+        let (code, parts, said) = run(&folder, &format!("{words} --memory {LITTLE}"));
+        assert_eq!(code, Some(0), "{words}: {said}");
+        assert!(said.contains("note: the points need more than "), "{said}");
+        assert_eq!(whole, parts, "{words}");
+        assert_left_nothing(&folder);
+    }
+    for (memory, out) in [("2GB", "a.geojson"), (LITTLE, "b.geojson")] {
+        let words = format!("drape tiles/*.xyz --lines lines.geojson --memory {memory} -o {out}");
+        let (code, _, said) = run(&folder, &words);
+        assert_eq!(
+            (code, said.contains("made in files")),
+            (Some(0), memory == LITTLE),
+            "{said}"
+        );
+    }
+    assert_eq!(
+        super::bytes(&folder, "a.geojson"),
+        super::bytes(&folder, "b.geojson")
+    );
+    assert_left_nothing(&folder);
+}
+
+#[test]
+fn memory_that_cannot_be_kept_to_is_noted_or_refused() {
+    let folder = points();
+    let at = "--at at.csv";
+    for (words, code, said) in [
+        (
+            format!("sample tiles/west.xyz {at} --memory 1MB"),
+            2,
+            "expected at least 16MB",
+        ),
+        (
+            format!("sample tiles/*.xyz {at} --memory {LITTLE} --method nearest"),
+            0,
+            "note: --memory has no effect: tiles have linear heights only",
+        ),
+        (
+            format!("sample tiles/*.xyz {at} --memory {LITTLE} --add-ridges"),
+            0,
+            "note: --memory has no effect: --add-ridges does not work with tiles yet",
+        ),
+        (
+            format!("volume tiles/west.xyz --plane 3 --memory {LITTLE} --boundary none.shp"),
+            3,
+            "none.shp",
+        ),
+    ] {
+        let (found, _, printed) = run(&folder, &words);
+        assert!(printed.contains(said), "{words}: {printed}");
+        assert_eq!(found == Some(0), code == 0, "{words}: {printed}");
+        assert_left_nothing(&folder);
+    }
+    let words = format!("sample tiles/*.xyz {at} --memory {LITTLE}");
+    let lost = program(&folder, &words)
+        .env("TMPDIR", "lost")
+        .output()
+        .unwrap();
+    let said = String::from_utf8(lost.stderr).unwrap();
+    assert!(
+        said.contains("error: lost: ") && said.contains("TMPDIR"),
+        "{said}"
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn a_signal_leaves_no_file_of_the_surface() {
+    use std::os::unix::process::ExitStatusExt;
+    use std::time::{Duration, Instant};
+
+    let folder = points();
+    let is_there = |folder: &Path| {
+        let inner = std::fs::read_dir(folder.join("tmp")).unwrap();
+        inner
+            .flatten()
+            .any(|entry| entry.path().join("surface.tins.job").exists())
+    };
+    let is_made = |folder: &Path| {
+        let inner = std::fs::read_dir(folder.join("tmp")).unwrap();
+        inner
+            .flatten()
+            .any(|entry| entry.path().join("surface.tins").exists())
+    };
+    // While tiles are made, and while points are waited for.
+    let moments: [&dyn Fn(&Path) -> bool; 2] = [&is_there, &is_made];
+    for reached in moments {
+        let words = format!("sample tiles/*.xyz --at - --memory {LITTLE}");
+        let mut child = program(&folder, &words)
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let start = Instant::now();
+        while !reached(folder.path()) {
+            assert!(
+                start.elapsed() < Duration::from_secs(120),
+                "it has not come"
+            );
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        let kill = ["-c", "kill -TERM \"$0\"", &child.id().to_string()];
+        assert!(Command::new("sh").args(kill).status().unwrap().success());
+        assert_eq!(child.wait().unwrap().signal(), Some(15));
+        assert_left_nothing(&folder);
+    }
+}
