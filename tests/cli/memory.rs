@@ -11,23 +11,24 @@ use super::{files_of, folder_with};
 /// The least memory that can be given.
 const LITTLE: &str = "16MB";
 
-/// More points than have room in it, in two files.
+/// Text that is taken for more points than have room in it, in two files: numbers are long.
 fn points() -> TempDir {
     let half = |from: u32| {
         let mut text = String::new();
-        for i in 0..90_000 {
-            let [x, y] = [from + i % 300, i / 300];
-            writeln!(text, "{x} {y} {}", x * y % 17).unwrap();
+        let zeros = "0".repeat(80);
+        for i in 0..9000 {
+            let [x, y] = [from + i % 100, i / 100];
+            writeln!(text, "{x}.{zeros} {y}.{zeros} {}.{zeros}", x * y % 17).unwrap();
         }
         text
     };
     let line = |text: &str| super::geojson(25832, "LineString", text);
     folder_with(&[
         ("tiles/west.xyz", &half(0)),
-        ("tiles/east.xyz", &half(300)),
-        ("at.csv", "x,y\n10.5,20.25\n299.5,7\n599,299\n700,1\n"),
-        ("checks.csv", "x,y,z\n10.5,20.25,8\n299.5,7,9\n50,60,0\n"),
-        ("lines.geojson", &line("[[5.5,3],[420.25,150],[640,151]]")),
+        ("tiles/east.xyz", &half(100)),
+        ("at.csv", "x,y\n10.5,20.25\n99.5,7\n199,89\n700,1\n"),
+        ("checks.csv", "x,y,z\n10.5,20.25,8\n99.5,7,9\n50,60,0\n"),
+        ("lines.geojson", &line("[[5.5,3],[120.25,50],[240,51]]")),
         ("tmp/kept", ""),
     ])
 }
