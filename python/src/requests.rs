@@ -700,3 +700,14 @@ impl FrameArguments {
         })
     }
 }
+
+/// Returns the bytes that a text states.
+pub(crate) fn memory(text: &str) -> PyResult<u64> {
+    run::memory_of(text).map_err(|why| {
+        errors::usage(
+            &format!("memory: {why}"),
+            &format!("'{text}'"),
+            "write '200MB'",
+        )
+    })
+}

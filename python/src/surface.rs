@@ -56,6 +56,19 @@ impl Surface {
     }
 }
 
+/// Returns the request for the TIN of points and lines.
+fn requested(
+    points: &[PointInput<'_>],
+    read: &ReadArguments,
+    systems: &SystemArguments,
+    options: &SurfaceArguments<'_>,
+) -> PyResult<SurfaceRequest> {
+    Ok(SurfaceRequest {
+        source: Source::Points(Box::new(options.request(points, read)?)),
+        systems: systems.options()?,
+    })
+}
+
 #[pymethods]
 impl Surface {
     /// Builds the TIN of points and lines.
@@ -70,16 +83,40 @@ impl Surface {
         call: Call,
     ) -> PyResult<Self> {
         let method = requests::method(method)?;
-        let source = Source::Points(Box::new(options.request(&points, &read)?));
-        let request = SurfaceRequest {
-            source,
-            systems: systems.options()?,
-        };
+        let request = requested(&points, &read, &systems, &options)?;
         let count = requests::count(&points).filter(|_| !options.have_lines());
         // The arrays are copied, and may be changed.
         drop((points, options));
         work::run_on(py, &call, count, move |context| -> Result<_> {
             Ok(run::triangles_for(method, &request, context)?)
+        })
+        .map(Surface::of)
+    }
+
+    /// Builds one of `count` TINs of points and lines that are only asked: in files if it needs more
+    /// than its share of the memory.
+    #[staticmethod]
+    #[allow(clippy::too_many_arguments)] // as Python passes them
+    fn ask(
+        py: Python<'_>,
+        points: Vec<PointInput<'_>>,
+        read: ReadArguments,
+        systems: SystemArguments,
+        options: SurfaceArguments<'_>,
+        method: &str,
+        call: Call,
+        memory: Option<&str>,
+        count: u64,
+    ) -> PyResult<Self> {
+        let method = requests::method(method)?;
+        let memory = memory.map(requests::memory).transpose()?;
+        let memory = memory.map(|all| all / count.max(1));
+        let request = requested(&points, &read, &systems, &options)?;
+        let known = requests::count(&points).filter(|_| !options.have_lines());
+        // The arrays are copied, and may be changed.
+        drop((points, options));
+        work::run_on(py, &call, known, move |context| -> Result<_> {
+            Ok(run::open_surface(&request, method, memory, context)?)
         })
         .map(Surface::of)
     }

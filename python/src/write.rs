@@ -84,7 +84,7 @@ impl Asked<'_> {
         });
         Ok(TileOptions {
             division: division.transpose()?.unwrap_or_default(),
-            memory: self.memory.as_deref().map(memory).transpose()?,
+            memory: self.memory.as_deref().map(requests::memory).transpose()?,
             folder: self.job.clone(),
             bad: if self.skip_bad {
                 BadFiles::Skip
@@ -114,17 +114,6 @@ impl Asked<'_> {
             }
         })
     }
-}
-
-/// Returns the bytes that a text states.
-fn memory(text: &str) -> PyResult<u64> {
-    run::memory_of(text).map_err(|why| {
-        errors::usage(
-            &format!("memory: {why}"),
-            &format!("'{text}'"),
-            "write '200MB'",
-        )
-    })
 }
 
 /// Returns the time in which a worker gives a sign of life.
@@ -495,7 +484,7 @@ impl Job {
         call: Call,
     ) -> PyResult<Bound<'py, PyDict>> {
         let options = WorkOptions {
-            memory: most.as_deref().map(memory).transpose()?,
+            memory: most.as_deref().map(requests::memory).transpose()?,
             lease: lease(seconds)?,
         };
         let report = work::run_alone(py, &call, |context| -> Result<_> {

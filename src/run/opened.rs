@@ -66,7 +66,7 @@ fn in_files(
             .in_file(&parent)
             .cure("name a folder for large files with the environment variable TMPDIR")
     })?;
-    journal.add(Notice::MadeInFiles {
+    journal.add(Notice::BuiltInFiles {
         memory: memory.unwrap_or_else(memory::half_of_free),
         folder: folder.path().to_path_buf(),
     });

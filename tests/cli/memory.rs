@@ -71,7 +71,7 @@ fn larger_points_are_asked_in_one_command() {
         let (code, whole, said) = run(&folder, words);
         assert_eq!(code, Some(0), "{words}: {said}");
         assert!(
-            whole.len() > 50 && !said.contains("made in files"),
+            whole.len() > 50 && !said.contains("built in files"),
             "{words}: {said}"
         );
         let (code, parts, said) = run(&folder, &format!("{words} --memory {LITTLE}"));
@@ -84,7 +84,7 @@ fn larger_points_are_asked_in_one_command() {
         let words = format!("drape tiles/*.xyz --lines lines.geojson --memory {memory} -o {out}");
         let (code, _, said) = run(&folder, &words);
         assert_eq!(
-            (code, said.contains("made in files")),
+            (code, said.contains("built in files")),
             (Some(0), memory == LITTLE),
             "{said}"
         );
@@ -152,14 +152,14 @@ fn a_signal_leaves_no_file_of_the_surface() {
             .flatten()
             .any(|entry| entry.path().join("surface.tins.job").exists())
     };
-    let is_made = |folder: &Path| {
+    let is_complete = |folder: &Path| {
         let inner = std::fs::read_dir(folder.join("tmp")).unwrap();
         inner
             .flatten()
             .any(|entry| entry.path().join("surface.tins").exists())
     };
     // While tiles are made, and while points are waited for.
-    let moments: [&dyn Fn(&Path) -> bool; 2] = [&is_there, &is_made];
+    let moments: [&dyn Fn(&Path) -> bool; 2] = [&is_there, &is_complete];
     for reached in moments {
         let words = format!("sample tiles/*.xyz --at - --memory {LITTLE}");
         let mut child = program(&folder, &words)

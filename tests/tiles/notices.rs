@@ -25,7 +25,7 @@ const NOT_IN_TILES: &[(&str, &str)] = &[
     ("LittleMemory", "tiles are chosen to fit into memory"),
     ("MemoryUnused", "tiles cannot be made"),
     (
-        "MadeInFiles",
+        "BuiltInFiles",
         "of verbs that ask a surface, such as `volume`",
     ),
     ("OutputMayNotFit", "depends on the disk"),

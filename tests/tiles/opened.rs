@@ -250,7 +250,7 @@ impl Monitor for Canceler {
     }
 
     fn notice(&self, notice: &Notice) {
-        if let Notice::MadeInFiles { folder, .. } = notice {
+        if let Notice::BuiltInFiles { folder, .. } = notice {
             assert!(folder.is_dir());
             *self.folder.lock().unwrap() = Some(folder.clone());
         }
@@ -285,7 +285,7 @@ fn no_file_is_left_once_the_surface_is_gone_or_an_error_ends_the_run() {
     assert_eq!(there(&scratch), 2, "the index and the folder of its parts");
     assert!(matches!(
         opened.notices[..],
-        [Notice::MadeInFiles { .. }, ..]
+        [Notice::BuiltInFiles { .. }, ..]
     ));
     drop(opened);
     assert!(!scratch.exists());

@@ -33,6 +33,17 @@ class Surface:
         call: _Call,
     ) -> Surface: ...
     @staticmethod
+    def ask(
+        points: list[Any],
+        read: dict[str, Any],
+        systems: dict[str, Any],
+        options: dict[str, Any],
+        method: str,
+        call: _Call,
+        memory: Optional[str],
+        count: int,
+    ) -> Surface: ...
+    @staticmethod
     def open(file: str, systems: dict[str, Any], call: _Call) -> Optional[Surface]: ...
     @staticmethod
     def of_cells(cells: NDArray[np.float64], transform: list[float], crs: Optional[str]) -> Surface: ...

@@ -112,6 +112,7 @@ def compare(
     worst: int = 10,
     changed: Optional[float] = None,
     min_area: Optional[float] = None,
+    memory: Any = None,
     threads: Optional[int] = None,
     progress: Progress = None,
     **surface: Any,
@@ -132,6 +133,10 @@ def compare(
     min_area : float, optional
         With ``changed``: also find the areas in which the surfaces differ by more, exact on the triangles of both, and
         leave out those that are smaller than this; 0 keeps all.
+    memory : int or str, optional
+        The memory for surfaces of points, such as ``"200MB"``; half of what is free by default. Files of points that need
+        more become a TIN in parts first, which is used in its files, with the same result if heights are linear. The files are
+        in the folder that the environment names as ``TMPDIR``, else in ``/var/tmp``, and are removed at the end.
     threads, progress
         As for :func:`tin`.
     **surface
@@ -156,7 +161,7 @@ def compare(
     if least is not None and (height is None or not least >= 0):
         raise usage("min_area is not the size of areas", min_area, "pass a number from 0 on, together with changed")
     places = _inputs.whole_numbers([worst], "worst", 1_000_000)[0]
-    first, second = surfaces_of([a, b], surface, threads, progress, by)
+    first, second = surfaces_of([a, b], surface, memory, threads, progress, by)
     with call(threads, progress) as request:
         cells, count, numbers, found, counts, changes = _breakline.compare(
             first, second, frame, by, places, height, least, names_of([(a, "a"), (b, "b")]), request

@@ -11,7 +11,7 @@ import numpy as np
 from . import _breakline, _inputs
 from ._call import Progress, call
 from ._errors import usage
-from ._verbs import assigned, names_of, refuse_kept, surface_of, surfaces_of
+from ._verbs import asked, assigned, names_of, refuse_kept, surface_of, surfaces_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +60,7 @@ def profile(
     exaggeration: Optional[float] = None,
     datum: Optional[float] = None,
     title: Optional[str] = None,
+    memory: Any = None,
     threads: Optional[int] = None,
     progress: Progress = None,
     **surface: Any,
@@ -90,6 +91,10 @@ def profile(
         Replace files that exist.
     exaggeration, datum, title : optional
         Of plots: by how much heights are larger than distances, the height at which a plot begins, and a title.
+    memory : int or str, optional
+        The memory for surfaces of points, such as ``"200MB"``; half of what is free by default. Files of points that need
+        more become a TIN in parts first, which is used in its files, with the same result if heights are linear. The files are
+        in the folder that the environment names as ``TMPDIR``, else in ``/var/tmp``, and are removed at the end.
     threads, progress
         As for :func:`tin`.
     **surface
@@ -134,7 +139,7 @@ def profile(
     )
     refuse_kept(surface)
     lines = _one_layer(along, "along")
-    found = surfaces_of(list(surfaces), surface, threads, progress)
+    found = surfaces_of(list(surfaces), surface, memory, threads, progress)
     names = names_of([(points, f"surface {number}") for number, points in enumerate(surfaces, 1)])
     with call(threads, progress) as request:
         rows, _, _ = _breakline.profile(
@@ -150,6 +155,7 @@ def drape(
     step: Optional[float] = None,
     output: Any = None,
     overwrite: bool = False,
+    memory: Any = None,
     threads: Optional[int] = None,
     progress: Progress = None,
     **surface: Any,
@@ -168,6 +174,10 @@ def drape(
         Files to write: .shp, .gpkg, .geojson, .geojsonl or .dxf. Attributes of shapefiles, GeoPackage and GeoJSON are kept.
     overwrite : bool
         Replace files that exist.
+    memory : int or str, optional
+        The memory for surfaces of points, such as ``"200MB"``; half of what is free by default. Files of points that need
+        more become a TIN in parts first, which is used in its files, with the same result if heights are linear. The files are
+        in the folder that the environment names as ``TMPDIR``, else in ``/var/tmp``, and are removed at the end.
     threads, progress
         As for :func:`tin`.
     **surface
@@ -188,7 +198,7 @@ def drape(
     """
     refuse_kept(surface)
     layer = _one_layer(lines, "lines")
-    found = surface_of(points, surface, threads, progress)
+    found = surface_of(points, surface, threads, progress, build=asked(memory))
     with call(threads, progress) as request:
         return _breakline.drape(
             found, layer, assigned(surface), _step(step), names_of([(points, "the surface")])[0], _outputs(output, overwrite), request

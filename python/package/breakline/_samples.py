@@ -13,7 +13,7 @@ from ._call import Progress, call
 from ._errors import usage
 from ._names import Method
 from ._points import _read
-from ._verbs import assigned, is_built, refuse_kept, surface_of
+from ._verbs import asked, assigned, is_built, refuse_kept, surface_of
 
 #: How text is read.
 _READING = ("columns", "partial")
@@ -26,6 +26,7 @@ def sample(
     add: Any = "height",
     prefix: str = "",
     method: Method = "linear",
+    memory: Any = None,
     threads: Optional[int] = None,
     progress: Progress = None,
     **surface: Any,
@@ -45,6 +46,10 @@ def sample(
         What the names begin with.
     method : str
         How heights between the vertices are computed, as for :func:`dem`. Slopes need ``"linear"``.
+    memory : int or str, optional
+        The memory for surfaces of points, such as ``"200MB"``; half of what is free by default. Files of points that need
+        more become a TIN in parts first, which is used in its files, with the same result if heights are linear. The files are
+        in the folder that the environment names as ``TMPDIR``, else in ``/var/tmp``, and are removed at the end.
     threads, progress
         As for :func:`tin`.
     **surface
@@ -77,7 +82,7 @@ def sample(
     if not names or len(set(names)) < len(names):
         raise usage("add names a field twice, or none", names, 'pass names such as ["height", "slope"]')
     of_method = _inputs.name(method, "method")
-    found = surface_of(points, surface, threads, progress, of_method)
+    found = surface_of(points, surface, threads, progress, of_method, asked(memory))
     flat = positions.reshape(-1, 2)
     with call(threads, progress) as request:
         columns, values = found.samples(flat, names, _inputs.name(prefix, "prefix"), of_method, request)
@@ -162,6 +167,7 @@ def accuracy(
     group_by: Any = None,
     vegetated: Any = None,
     method: Method = "linear",
+    memory: Any = None,
     threads: Optional[int] = None,
     progress: Progress = None,
     **surface: Any,
@@ -184,6 +190,10 @@ def accuracy(
         Groups in vegetation: their accuracy is returned, and does not decide.
     method : str
         How heights between the vertices are computed, as for :func:`dem`.
+    memory : int or str, optional
+        The memory for surfaces of points, such as ``"200MB"``; half of what is free by default. Files of points that need
+        more become a TIN in parts first, which is used in its files, with the same result if heights are linear. The files are
+        in the folder that the environment names as ``TMPDIR``, else in ``/var/tmp``, and are removed at the end.
     threads, progress
         As for :func:`tin`.
     **surface
@@ -225,7 +235,7 @@ def accuracy(
         raise usage("vegetated needs groups", vegetated, "pass group_by")
     named = [] if vegetated is None else [vegetated] if isinstance(vegetated, str) else list(vegetated)
     of_method = _inputs.name(method, "method")
-    found = surface_of(points, surface, threads, progress, of_method)
+    found = surface_of(points, surface, threads, progress, of_method, asked(memory))
     name = os.fspath(points) if _inputs.is_path(points) else "the surface"
     with call(threads, progress) as request:
         report = _breakline.accuracy(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple, Optional, overload
 
 import numpy as np
@@ -696,7 +697,9 @@ def tin(
     return built(options, "linear")
 
 
-def built(options: "dict[str, Any]", method: str) -> Tin:
+def built(
+    options: "dict[str, Any]", method: str, build: "Callable[..., _breakline.Surface]" = _breakline.Surface.build
+) -> Tin:
     """Open or build the TIN of the parameters of `tin`, such that heights by a method are those of all points."""
     found = _inputs.points(options["points"])
     systems = _systems(options["crs"], options["to_crs"], options["force_degrees"])
@@ -713,7 +716,7 @@ def built(options: "dict[str, Any]", method: str) -> Tin:
         masked = _inputs.masked_rows([*found, *lines])
         try:
             read = _read(options["columns"], options["partial"])
-            surface = _breakline.Surface.build(found, read, systems, arguments, method, request)
+            surface = build(found, read, systems, arguments, method, request)
         except (FormatError, LimitError) as error:
             _inputs.name_row(error, found)
             raise

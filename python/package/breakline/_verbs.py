@@ -33,8 +33,18 @@ def assigned(surface: "dict[str, Any]") -> Optional[str]:
     return None if surface.get("to_crs") is not None else _inputs.crs_text(surface.get("crs"))
 
 
+def asked(memory: Any, count: int = 1) -> "Callable[..., _breakline.Surface]":
+    """Return what builds one of some surfaces, in files if they need more memory: for what is only asked."""
+    return partial(_breakline.Surface.ask, memory=None if memory is None else str(memory), count=max(count, 1))
+
+
 def surface_of(
-    points: Any, surface: "dict[str, Any]", threads: Any, progress: Any, method: str = "linear"
+    points: Any,
+    surface: "dict[str, Any]",
+    threads: Any,
+    progress: Any,
+    method: str = "linear",
+    build: "Callable[..., _breakline.Surface]" = _breakline.Surface.build,
 ) -> _breakline.Surface:
     """Return the surface of the library for a Tin, a raster, or what ``tin`` takes, for heights by a method."""
     if isinstance(points, (Tin, Raster)):
@@ -50,7 +60,7 @@ def surface_of(
     bound = signature(tin).bind(points, threads=threads, progress=progress, **surface)
     bound.apply_defaults()
     options = {name: value for name, value in bound.arguments.items() if name not in HOW}
-    return built(options, method)._surface
+    return built(options, method, build)._surface
 
 
 def _refuse(surface: "dict[str, Any]", what: str) -> None:
@@ -428,6 +438,7 @@ def volume(
     unit: Optional[str] = None,
     swell: Optional[float] = None,
     shrink: Optional[float] = None,
+    memory: Any = None,
     threads: Optional[int] = None,
     progress: Progress = None,
     **surface: Any,
@@ -453,6 +464,10 @@ def volume(
         The unit of volumes; areas are in its squares. Cubic meters if the coordinate system is known.
     swell, shrink : float, optional
         The volumes of loose and of compacted ground, as multiples of those in place, such as 1.25 and 0.9; 1 by default.
+    memory : int or str, optional
+        The memory for surfaces of points, such as ``"200MB"``; half of what is free by default. Files of points that need
+        more become a TIN in parts first, which is used in its files, with the same result if heights are linear. The files are
+        in the folder that the environment names as ``TMPDIR``, else in ``/var/tmp``, and are removed at the end.
     threads, progress
         As for :func:`tin`.
     **surface
@@ -486,7 +501,7 @@ def volume(
     if name_by is not None and within is None:
         raise usage("name_by is for polygons", name_by, "pass them as within")
     inputs = [a] if b is None else [a, b]
-    found = surfaces_of(inputs, surface, threads, progress)
+    found = surfaces_of(inputs, surface, memory, threads, progress)
     factors = [_inputs.number(1 if factor is None else factor, name) for factor, name in [(swell, "swell"), (shrink, "shrink")]]
     names = names_of([(a, "a"), (b, "b")])
     with call(threads, progress) as request:
@@ -506,13 +521,14 @@ def volume(
 
 
 def surfaces_of(
-    inputs: "list[Any]", surface: "dict[str, Any]", threads: Any, progress: Any, method: str = "linear"
+    inputs: "list[Any]", surface: "dict[str, Any]", memory: Any, threads: Any, progress: Any, method: str = "linear"
 ) -> "list[_breakline.Surface]":
-    """Return several surfaces; the options of building a TIN are for those that are built."""
+    """Return several surfaces to be asked; the memory and the options of a TIN are for those that are built."""
     are_built = [is_built(points) for points in inputs]
     of_any = {name: value for name, value in surface.items() if name in FOR_ANY}
     options = [of_any if any(are_built) and not built else surface for built in are_built]
-    return [surface_of(points, own, threads, progress, method) for points, own in zip(inputs, options)]
+    build = asked(memory, sum(are_built))
+    return [surface_of(points, own, threads, progress, method, build) for points, own in zip(inputs, options)]
 
 
 def names_of(inputs: "list[tuple[Any, str]]") -> "list[str]":

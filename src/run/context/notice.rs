@@ -61,8 +61,8 @@ pub enum Notice {
     /// The memory that was given makes no difference, since tiles cannot be made; with the reason,
     /// and what to do.
     MemoryUnused(Wording),
-    /// Points would need more memory than there is to use: their TIN is made in files first.
-    MadeInFiles {
+    /// Points would need more memory than there is to use: their TIN is built in files first.
+    BuiltInFiles {
         /// The memory to use, in bytes.
         memory: u64,
         /// The folder of the files, which is removed with the surface.
@@ -519,7 +519,7 @@ impl Notice {
             | Notice::PointsWithoutClassUsed(_)
             | Notice::NoiseUnused
             | Notice::MemoryUnused(_)
-            | Notice::MadeInFiles { .. }
+            | Notice::BuiltInFiles { .. }
             | Notice::Reassigned { .. }
             | Notice::NoSystem
             | Notice::DifferentUnits(..)

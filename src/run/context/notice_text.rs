@@ -130,7 +130,7 @@ fn text(notice: &Notice) -> Wording {
         Notice::Skipped { why, hole, others } => skipped(why, hole.as_ref(), others).into(),
         Notice::LittleMemory { need, left, limit } => little_memory(*need, *left, limit).into(),
         Notice::MemoryUnused(why) => wording![Setting::Memory, " has no effect: ", why.clone()],
-        Notice::MadeInFiles { memory, folder } => made_in_files(*memory, folder).into(),
+        Notice::BuiltInFiles { memory, folder } => built_in_files(*memory, folder).into(),
         Notice::OutputMayNotFit { need, free } => output_may_not_fit(*need, *free).into(),
         Notice::TasksMayNotFit { need, free } => tasks_may_not_fit(*need, *free).into(),
         Notice::NoPointUsed(path, classes) => no_point_used(path, classes.as_deref()),
@@ -270,10 +270,10 @@ fn little_memory(need: u64, left: u64, limit: &str) -> String {
     )
 }
 
-fn made_in_files(memory: u64, folder: &Path) -> String {
+fn built_in_files(memory: u64, folder: &Path) -> String {
     let (memory, folder) = (bytes(memory), folder.display());
     format!(
-        "the points need more than {memory} of memory: their TIN is made in files first, in {folder}"
+        "the points need more than {memory} of memory: their TIN is built in files first, in {folder}"
     )
 }
 

@@ -6,7 +6,7 @@ use super::surface::{Model, SurfaceProduct};
 use super::tin::BuildReport;
 use crate::crs::Crs;
 use crate::data::{Grid, Surface};
-use crate::error::Result;
+use crate::error::{Command, Error, Kind, Result, Setting, wording};
 use crate::run::context::notice::Notice;
 use crate::run::context::units::Units;
 use crate::run::context::{Context, Journal, Size, Stage};
@@ -67,9 +67,28 @@ fn of_model(
     let grid = match &product.model {
         Model::Raster(grid) => Cow::Borrowed(grid.as_ref()),
         Model::RasterFile(file) => Cow::Owned(Grid::collect(&file.cells())?),
+        Model::Parts(_) => {
+            let joined = product.triangles().map_err(in_memory_only)?;
+            return crate::terrain::simplify(joined, rule, context.cancel);
+        }
         _ => return crate::terrain::simplify(product.triangles()?, rule, context.cancel),
     };
     simplify_cells(&grid, rule, context.cancel)
+}
+
+/// Adds what to do to an error because parts do not fit into memory together.
+#[cold]
+fn in_memory_only(error: Error) -> Error {
+    match error.kind() {
+        Kind::Limit => error.cure(wording![
+            "a surface is simplified in one piece: build it of fewer points (",
+            Setting::Bounds,
+            "), which ",
+            Command::Points,
+            " can also thin"
+        ]),
+        _ => error,
+    }
 }
 
 fn notice(report: &SimplifyReport, crs: Option<&Crs>) -> Notice {

@@ -10,10 +10,10 @@ use crate::run::{Division, memory_of};
 pub(crate) struct MemoryArgs {
     /// Memory for surfaces of points, such as `2GB` [default: half of what is free]
     ///
-    /// Points that need more become a TIN in parts first, in tiles, which is used in its files: with
-    /// linear heights, the result is the same, byte for byte. The files take about 200 bytes a point,
-    /// in a folder in TMPDIR (else in /var/tmp) that is removed at the end. To ask the surface again,
-    /// write it once with `breakline tin -o OUT.tins`.
+    /// Points that need more become a TIN in parts first, which is used in its files: with linear
+    /// heights, the result is the same, byte for byte. The files take about 200 bytes a point, in a
+    /// folder in TMPDIR (else in /var/tmp) that is removed at the end. For a surface that is asked
+    /// again, write the parts once with `breakline tin -o OUT.tins`.
     #[arg(long, value_name = "SIZE", value_parser = memory_of)]
     pub(crate) memory: Option<u64>,
 }
