@@ -14,6 +14,9 @@ use crate::run::context::{Context, Journal, Size, Stage};
 use crate::run::lines::shapes::{self, Drawn};
 use crate::terrain::{Locator, stepped, vertices_along};
 
+/// Lines that one thread follows before the run may be canceled, at most.
+const LINES_AT_ONCE: usize = 64;
+
 /// The points of all lines by a step, at most.
 const MOST_POINTS: f64 = 1e8;
 
@@ -108,22 +111,29 @@ pub(crate) fn follow(
         let polled = Watched::polled(faces, context)?;
         let locator = Locator::prepared(faces, &polled)?;
         polled.end()?;
-        let one = |(number, line): (usize, &PlanLine)| {
-            let mut found = locator.along(line)?;
+        let one = |number: usize, mut found: Vec<Stretch>| {
+            let line = &lines[number];
             found.iter_mut().for_each(|stretch| count(number, stretch));
-            work.add(1)?;
             let Some((step, vertices)) = step else {
-                return Ok(found);
+                return found;
             };
             let kept = match vertices {
                 Vertices::Kept => vertices_along(line),
                 Vertices::LeftOut => Vec::new(),
             };
             let stepped = found.iter().map(|stretch| stepped(stretch, step, &kept));
-            Ok(stepped.collect())
+            stepped.collect()
         };
-        let found: Result<Vec<_>> = lines.par_iter().enumerate().map(one).collect();
-        let found = found?;
+        let shares = 8 * rayon::current_num_threads();
+        let size = lines.len().div_ceil(shares).clamp(1, LINES_AT_ONCE);
+        let some = |(share, lines): (usize, &[PlanLine])| -> Result<Vec<Vec<Stretch>>> {
+            let found = locator.along_each(lines)?;
+            work.add(lines.len() as u64)?;
+            let numbered = (share * size..).zip(found);
+            Ok(numbered.map(|(number, found)| one(number, found)).collect())
+        };
+        let found: Result<Vec<_>> = lines.par_chunks(size).enumerate().map(some).collect();
+        let found = found?.into_iter().flatten().collect();
         work.end()?;
         Ok(found)
     })

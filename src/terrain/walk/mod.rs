@@ -6,17 +6,20 @@ mod rim;
 mod segment;
 mod step;
 mod stepped;
+mod stretches;
+mod turns;
 
-use self::follow::follow;
+use self::follow::Follow;
 use self::hints::Hints;
 use self::rim::{RimEdge, on_rim};
 use self::segment::Segment;
 use self::step::{At, Steps};
 pub(crate) use self::stepped::stepped;
+use self::turns::in_turns;
 use super::boxes::Boxes;
 use super::linear::gradient;
-use crate::data::{LinePoint, Stretch, Surface};
-use crate::error::{Error, Result};
+use crate::data::{Stretch, Surface};
+use crate::error::Result;
 
 /// Finds positions on a surface, and follows lines over it.
 ///
@@ -123,40 +126,20 @@ impl<'a> Locator<'a> {
     /// start. For each segment that leaves the surface, a search in the edges of the rim that are
     /// near to the segment, which are then sorted.
     pub fn along(&self, line: &[[f64; 2]]) -> Result<Vec<Stretch>> {
-        if let Some(vertex) = line.iter().position(|p| !p.iter().all(|c| c.is_finite())) {
-            let [x, y] = line[vertex];
-            let number = vertex + 1;
-            return Err(Error::usage(format!(
-                "vertex {number} of the line at {x} {y}: expected finite coordinates"
-            )));
-        }
-        let mut found = Stretches::default();
-        let mut at = None;
-        for ends in line.windows(2) {
-            let Some(segment) = Segment::new(ends[0], ends[1]) else {
-                continue;
-            };
-            let mut steps = Steps::new(self.surface);
-            let start = at.unwrap_or_else(|| self.locate(segment.from, &mut steps));
-            found.begin(&segment);
-            at = Some(follow(
-                &mut steps,
-                &self.rim,
-                &segment,
-                start,
-                &mut |point| found.take(point),
-            ));
-            if steps.are_endless() {
-                self.surface.ensure_intact()?;
-                return Err(Error::format(format!(
-                    "the faces near {} {} overlap",
-                    segment.from[0], segment.from[1]
-                ))
-                .cure("a surface has one height at each position: repair it"));
-            }
-        }
-        self.surface.ensure_intact()?;
-        Ok(found.end())
+        self.along_each(&[line]).map(|mut each| each.swap_remove(0))
+    }
+
+    /// Returns the parts of each of some lines that are on the surface, as [`along`](Self::along)
+    /// does.
+    ///
+    /// # Errors
+    /// Those of [`along`](Self::along), for any of them.
+    ///
+    /// # Complexity
+    /// That of [`along`](Self::along) for each. Faster together than one by one: while memory
+    /// answers for one line, others go on.
+    pub fn along_each<L: AsRef<[[f64; 2]]>>(&self, lines: &[L]) -> Result<Vec<Vec<Stretch>>> {
+        in_turns(self, &lines.iter().map(AsRef::as_ref).collect::<Vec<_>>())
     }
 
     /// Returns where a position is, by a walk from a face near to it.
@@ -171,122 +154,15 @@ impl<'a> Locator<'a> {
         let start = At::Vertex { face, corner: 0 };
         let at = match Segment::new([corners[0][0], corners[0][1]], q) {
             None => start,
-            Some(segment) => follow(steps, &self.rim, &segment, start, &mut |_| ()),
+            Some(segment) => Follow::new(steps, segment, start, &mut |_| ()).to_end(
+                steps,
+                &self.rim,
+                &mut |_| (),
+            ),
         };
         match at {
             At::Off => on_rim(self.surface, &self.rim, q),
             at => at,
         }
-    }
-}
-
-/// The parts of a line that are on a surface, while it is followed.
-#[derive(Default)]
-struct Stretches {
-    done: Vec<Stretch>,
-    open: Stretch,
-    segment: Option<Segment>,
-    /// The distances along the line at which the segment starts and ends.
-    start: f64,
-    end: f64,
-}
-
-impl Stretches {
-    /// Goes on to the next segment of the line.
-    fn begin(&mut self, segment: &Segment) {
-        self.start = self.end;
-        self.end = self.start + distance(segment.to, segment.from);
-        self.segment = Some(*segment);
-    }
-
-    /// Adds a point on the surface, or a gap.
-    fn take(&mut self, point: Option<[f64; 3]>) {
-        let Some(at) = point else {
-            self.close();
-            return;
-        };
-        let along = self.distance([at[0], at[1]]);
-        match self.open.last() {
-            Some(last) if last.at == at => {}
-            // Rounded positions may be out of order by a rounding error.
-            Some(last) => self.open.push(LinePoint {
-                along: along.max(last.along),
-                at,
-            }),
-            None => self.open.push(LinePoint { along, at }),
-        }
-    }
-
-    fn distance(&self, q: [f64; 2]) -> f64 {
-        let Some(Segment { from, to, .. }) = self.segment else {
-            return self.start;
-        };
-        if q == to {
-            return self.end;
-        }
-        // From the nearer end, where it is the more precise.
-        let along = if is_nearer(q, from, to) {
-            self.start + distance(q, from)
-        } else {
-            self.end - distance(q, to)
-        };
-        along.clamp(self.start, self.end)
-    }
-
-    fn close(&mut self) {
-        let stretch = std::mem::take(&mut self.open);
-        let is_there = |p: &LinePoint, q: &LinePoint| p.at[..2] == q.at[..2];
-        if stretch.windows(2).any(|pair| !is_there(&pair[0], &pair[1])) {
-            self.done.push(stretch);
-        }
-    }
-
-    fn end(mut self) -> Vec<Stretch> {
-        self.close();
-        self.done
-    }
-}
-
-fn distance(p: [f64; 2], q: [f64; 2]) -> f64 {
-    (p[0] - q[0]).hypot(p[1] - q[1])
-}
-
-/// Returns true unless the [`distance`] to `a` is above that to `b`.
-///
-/// `PERF:` decided by squares where these are surely in the order of the distances.
-fn is_nearer(q: [f64; 2], a: [f64; 2], b: [f64; 2]) -> bool {
-    const SURELY: f64 = 1.0 + 1e-12;
-    let square = |p: [f64; 2]| {
-        let [x, y] = [0, 1].map(|k| q[k] - p[k]);
-        x * x + y * y
-    };
-    let [to_a, to_b] = [square(a), square(b)];
-    let (low, high) = (to_a.min(to_b), to_a.max(to_b));
-    if high > f64::MIN_POSITIVE / f64::EPSILON && high.is_finite() && low * SURELY < high {
-        return to_a < to_b;
-    }
-    distance(q, a) <= distance(q, b)
-}
-
-#[cfg(test)]
-mod tests {
-    use testkit::random::Random;
-
-    use super::*;
-
-    #[test]
-    fn the_nearer_end_is_that_by_distances() {
-        let mut random = Random(1);
-        let mut is_near = [0; 2];
-        for _ in 0..20_000 {
-            let unit = random.pick(&[1.0, 0.01, 1e-170, 1e160]);
-            let shift = random.pick(&[0.0, 5_400_000.0]) * unit;
-            let mut point = || [0, 1].map(|_| shift + random.around(4) as f64 * unit);
-            let [q, a, b] = [(); 3].map(|()| point());
-            let expected = distance(q, a) <= distance(q, b);
-            assert_eq!(is_nearer(q, a, b), expected, "{q:?} {a:?} {b:?}");
-            is_near[usize::from(expected)] += 1;
-        }
-        assert!(is_near.iter().all(|&count| count > 4000), "{is_near:?}");
     }
 }

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 
 use crate::data::orientation;
-use crate::triangulation::kernel::{Adaptive, Exact, Kernel, Predicate, crossing};
+use crate::triangulation::kernel::{Adaptive, Exact, Kernel, PointArea, Predicate, crossing_by};
 use crate::triangulation::num::{Number, Sign};
 
 /// How precise an area has to be, relative to itself, for a position that is computed from it.
@@ -27,8 +27,16 @@ pub(super) struct Seen {
     pub(super) at: [f64; 3],
     /// Positive to the left of the segment, zero on its line. Exact.
     pub(super) side: Sign,
-    /// Twice the area between it and the sorted ends of the segment, if that is precise.
-    area: Option<f64>,
+    /// Twice the area between it and the sorted ends of the segment.
+    area: Area,
+}
+
+/// Twice an area, as precisely as it has to be.
+#[derive(Debug, Clone, Copy)]
+enum Area {
+    Precise(f64),
+    /// A double is not precise.
+    Twice(Option<PointArea>),
 }
 
 /// A position on a segment.
@@ -64,11 +72,16 @@ impl Segment {
             (true, false) => Sign::Negative,
         };
         let is_precise = is_certain && error <= PRECISE * area.abs();
-        Seen {
-            at,
-            side,
-            area: is_precise.then_some(area),
-        }
+        let area = match is_precise {
+            true => Area::Precise(area),
+            false => Area::Twice(self.area(at)),
+        };
+        Seen { at, side, area }
+    }
+
+    /// Returns twice the area between a vertex and the sorted ends, with twice the digits.
+    fn area(&self, at: [f64; 3]) -> Option<PointArea> {
+        PointArea::new([at[0], at[1]], self.ends)
     }
 
     /// Returns true if the segment begins at the first of its sorted ends.
@@ -110,10 +123,14 @@ impl Segment {
         let is_sorted = [p.at[0], p.at[1]] <= [q.at[0], q.at[1]];
         let [p, q] = if is_sorted { [p, q] } else { [q, p] };
         let part = match (p.area, q.area) {
-            (Some(at_p), Some(at_q)) => at_p / (at_p - at_q),
+            (Area::Precise(at_p), Area::Precise(at_q)) => at_p / (at_p - at_q),
             _ => {
-                let [p, q] = [p, q].map(|end| [end.at[0], end.at[1]]);
-                crossing(p, q, self.ends[0], self.ends[1])
+                let areas = [p, q].map(|end| match end.area {
+                    Area::Precise(_) => self.area(end.at),
+                    Area::Twice(area) => area,
+                });
+                let edge = [p, q].map(|end| [end.at[0], end.at[1]]);
+                crossing_by(edge, self.ends, areas)
             }
         };
         let part = if part.is_nan() {

@@ -147,81 +147,78 @@ impl<'a> Steps<'a> {
         })
     }
 
-    /// Goes on to the edge or vertex that comes next, and over all edges that follow, unless the
-    /// segment ends before.
-    pub(super) fn step(
+    /// Goes on to a corner of a face, through the face or along the edge opposite a corner, unless
+    /// the segment ends before.
+    pub(super) fn reach(
         &mut self,
-        toward: Toward,
+        [face, corner]: [u32; 2],
+        along: Option<usize>,
         segment: &Segment,
         take: &mut impl FnMut(Option<[f64; 3]>),
     ) -> Stepped {
-        match toward {
-            Toward::Edge(exit) => self.cross(exit, segment, take),
-            Toward::Vertex {
-                face,
-                corner,
-                along,
-            } => {
-                let nowhere = Stepped::Reached(Event::Point(segment.to), None);
-                if self.count().is_none() {
-                    return nowhere;
-                }
-                let Some(corners) = self.surface.triangle(face) else {
-                    return nowhere;
-                };
-                let vertex = corners[corner];
-                let order = segment.compare_points(segment.to, plan(vertex));
-                if order.is_gt() {
-                    take(Some(vertex));
-                    let next = self.around(face, corner, segment);
-                    return Stepped::Reached(Event::Point(plan(vertex)), next);
-                }
-                let at = match along {
-                    _ if order.is_eq() => At::Vertex { face, corner },
-                    Some(corner) => At::Edge { face, corner },
-                    None => At::Inside { face },
-                };
-                take(self.point(at, segment.to));
-                Stepped::Ended(at)
-            }
+        let corner = corner as usize;
+        let nowhere = Stepped::Reached(Event::Point(segment.to), None);
+        if self.count().is_none() {
+            return nowhere;
         }
+        let Some(corners) = self.surface.triangle(face) else {
+            return nowhere;
+        };
+        let vertex = corners[corner];
+        let order = segment.compare_points(segment.to, plan(vertex));
+        if order.is_gt() {
+            take(Some(vertex));
+            let next = self.around(face, corner, segment);
+            return Stepped::Reached(Event::Point(plan(vertex)), next);
+        }
+        let at = match along {
+            _ if order.is_eq() => At::Vertex { face, corner },
+            Some(corner) => At::Edge { face, corner },
+            None => At::Inside { face },
+        };
+        take(self.point(at, segment.to));
+        Stepped::Ended(at)
     }
 
-    /// Goes over edges, as long as one comes after the other.
-    fn cross(
+    /// Goes over an edge to the next one, unless the segment ends before or a vertex comes first:
+    /// then returns what it came to. `across` is the face beyond the edge.
+    #[inline]
+    pub(super) fn cross(
         &mut self,
-        mut exit: Exit,
+        exit: &mut Exit,
+        across: Option<&FaceAcross>,
         segment: &Segment,
         take: &mut impl FnMut(Option<[f64; 3]>),
-    ) -> Stepped {
-        loop {
-            if self.count().is_none() {
-                return Stepped::Reached(Event::Point(segment.to), None);
-            }
-            let (face, corner) = (exit.face, exit.corner);
-            // `PERF:` asked for first, so that memory answers while the crossing is computed.
-            let across = self.surface.across(face, corner);
-            let position = segment.crossing(&exit.right, &exit.left);
-            let edge = [exit.left, exit.right].map(|end| plan(end.at));
-            if !segment.surely_goes_on(position, &exit.right, &exit.left) {
-                let at = match turn(edge[1], edge[0], segment.to) {
-                    Sign::Positive => Some(At::Inside { face }),
-                    Sign::Zero => Some(At::Edge { face, corner }),
-                    Sign::Negative => None,
-                };
-                if let Some(at) = at {
-                    take(self.point(at, segment.to));
-                    return Stepped::Ended(at);
-                }
-            }
-            take(Some(position));
-            let Some(across) = across else {
-                return Stepped::Reached(Event::Crossing(edge), None);
+    ) -> Option<Stepped> {
+        if self.count().is_none() {
+            return Some(Stepped::Reached(Event::Point(segment.to), None));
+        }
+        let (face, corner) = (exit.face, exit.corner);
+        let position = segment.crossing(&exit.right, &exit.left);
+        let edge = [exit.left, exit.right].map(|end| plan(end.at));
+        if !segment.surely_goes_on(position, &exit.right, &exit.left) {
+            let at = match turn(edge[1], edge[0], segment.to) {
+                Sign::Positive => Some(At::Inside { face }),
+                Sign::Zero => Some(At::Edge { face, corner }),
+                Sign::Negative => None,
             };
-            if let Err(vertex) = exit.pass(&across, segment) {
-                return Stepped::Reached(Event::Crossing(edge), Some(vertex));
+            if let Some(at) = at {
+                take(self.point(at, segment.to));
+                return Some(Stepped::Ended(at));
             }
         }
+        take(Some(position));
+        let Some(across) = across else {
+            return Some(Stepped::Reached(Event::Crossing(edge), None));
+        };
+        let vertex = exit.pass(across, segment).err()?;
+        Some(Stepped::Reached(Event::Crossing(edge), Some(vertex)))
+    }
+
+    /// Returns the face beyond an edge.
+    #[inline]
+    pub(super) fn across(&self, exit: &Exit) -> Option<FaceAcross> {
+        self.surface.across(exit.face, exit.corner)
     }
 
     /// Returns what a segment comes to in a face that it enters through the edge opposite a corner.

@@ -326,22 +326,67 @@ pub fn twice_area(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
 /// to the last bits however small the angle is. The segment must cross the line; this is not
 /// checked.
 pub fn crossing(a: [f64; 2], b: [f64; 2], c: [f64; 2], d: [f64; 2]) -> f64 {
-    let (area_a, area_b) = (Orientation2([c, d, a]), Orientation2([c, d, b]));
-    if in_range(&area_a) && in_range(&area_b) {
-        crossing_by_pairs([a, b], [c, d]).unwrap_or_else(|| crossing_exactly(&area_a, &area_b))
-    } else {
-        let (at_a, at_b) = (
-            area_a.value(Dyadic::difference),
-            area_b.value(Dyadic::difference),
-        );
-        at_a.clone().quotient(&(at_a - at_b))
+    crossing_by([a, b], [c, d], [a, b].map(|p| PointArea::new(p, [c, d])))
+}
+
+/// Twice the area between a point and two others, with twice the digits of a double.
+///
+/// `PERF:` two edges that a line crosses have a vertex in common, whose area is computed once.
+#[derive(Debug, Clone, Copy)]
+pub struct PointArea {
+    area: Pair,
+    /// The sum of its products, to which errors are relative.
+    size: f64,
+}
+
+impl PointArea {
+    /// Returns twice the area between `p` and the line through `c` and `d`; `None` if the
+    /// coordinates are so large or so small that digits may be lost.
+    #[inline]
+    pub fn new(p: [f64; 2], [c, d]: [[f64; 2]; 2]) -> Option<Self> {
+        if !in_range(&Orientation2([c, d, p])) {
+            return None;
+        }
+        let [ux, uy] = minus(c, p, Pair::difference);
+        let [vx, vy] = minus(d, p, Pair::difference);
+        let (left, right) = (ux * vy, uy * vx);
+        Some(PointArea {
+            area: left - right,
+            size: left.estimate().abs() + right.estimate().abs(),
+        })
     }
+}
+
+/// Returns the [`crossing`] of segment `a b` and the line through `c` and `d`, of whose areas at `a`
+/// and at `b` as much is given as can be.
+#[inline]
+pub fn crossing_by(
+    [a, b]: [[f64; 2]; 2],
+    [c, d]: [[f64; 2]; 2],
+    areas: [Option<PointArea>; 2],
+) -> f64 {
+    let exact = [a, b].map(|p| Orientation2([c, d, p]));
+    match areas {
+        [Some(at_a), Some(at_b)] => {
+            crossing_by_pairs(&at_a, &at_b).unwrap_or_else(|| crossing_exactly(&exact))
+        }
+        _ => crossing_of_any(&exact),
+    }
+}
+
+/// Returns the [crossing] for any coordinates, given the exact areas at the ends of the segment.
+#[cold]
+fn crossing_of_any(areas: &[Orientation2; 2]) -> f64 {
+    let [at_a, at_b] = areas.each_ref().map(|area| area.value(Dyadic::difference));
+    at_a.clone().quotient(&(at_a - at_b))
 }
 
 /// Returns the [crossing], given the exact areas at the ends of the segment.
 #[inline(never)]
-fn crossing_exactly(area_a: &Orientation2, area_b: &Orientation2) -> f64 {
-    let [at_a, at_b] = [area_a, area_b].map(|area| area.value(Expansion::difference));
+fn crossing_exactly(areas: &[Orientation2; 2]) -> f64 {
+    let [at_a, at_b] = areas
+        .each_ref()
+        .map(|area| area.value(Expansion::difference));
     let from_a = at_a.estimate();
     from_a / (at_a - at_b).estimate()
 }
@@ -351,21 +396,13 @@ fn crossing_exactly(area_a: &Orientation2, area_b: &Orientation2) -> f64 {
 ///
 /// `PERF:` a tenth of the time, and the doubt is about one in 2^30.
 #[inline]
-fn crossing_by_pairs([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> Option<f64> {
+fn crossing_by_pairs(at_a: &PointArea, at_b: &PointArea) -> Option<f64> {
     // Above the errors of both computations. Here each product is off by `Pair::ERROR`, and so is
     // each sum. There all components of an expansion but the largest are rounding errors, at most
     // 2^-52 of the products; their sum is rounded by 2^-53 of that.
     const ERROR: f64 = 32.0 * Pair::ERROR;
-    let area = |p: [f64; 2]| {
-        let [ux, uy] = minus(c, p, Pair::difference);
-        let [vx, vy] = minus(d, p, Pair::difference);
-        let (left, right) = (ux * vy, uy * vx);
-        let size = left.estimate().abs() + right.estimate().abs();
-        (left - right, size)
-    };
-    let ((at_a, size_a), (at_b, size_b)) = (area(a), area(b));
-    let error = ERROR * (size_a + size_b);
-    Some(at_a.rounded(error)? / (at_a - at_b).rounded(error)?)
+    let error = ERROR * (at_a.size + at_b.size);
+    Some(at_a.area.rounded(error)? / (at_a.area - at_b.area).rounded(error)?)
 }
 
 /// Returns true if expansions are exact for these coordinates.
@@ -390,9 +427,9 @@ mod tests {
                 |side: i64| [0, 1].map(|k| shift[k] + step * random.around(side) as f64);
             let [a, b] = [(); 2].map(|()| point(100));
             let [c, d] = [(); 2].map(|()| point(100_000));
-            let [at_a, at_b] = [a, b].map(|p| Orientation2([c, d, p]));
-            let exact = crossing_exactly(&at_a, &at_b);
-            if let Some(found) = crossing_by_pairs([a, b], [c, d]) {
+            let exact = crossing_exactly(&[a, b].map(|p| Orientation2([c, d, p])));
+            let [at_a, at_b] = [a, b].map(|p| PointArea::new(p, [c, d]).unwrap());
+            if let Some(found) = crossing_by_pairs(&at_a, &at_b) {
                 decided += 1;
                 assert_eq!(found.to_bits(), exact.to_bits(), "{a:?} {b:?} {c:?} {d:?}");
             }
@@ -400,8 +437,9 @@ mod tests {
         }
         assert!(decided > 19_000, "{decided}");
         // Undecided: zero.
-        let [c, d] = [[0.0, 0.0], [3.0, 1.0]];
-        assert_eq!(crossing_by_pairs([[6.0, 2.0], [7.0, -5.0]], [c, d]), None);
+        let ends = [[0.0, 0.0], [3.0, 1.0]];
+        let [at_a, at_b] = [[6.0, 2.0], [7.0, -5.0]].map(|p| PointArea::new(p, ends).unwrap());
+        assert_eq!(crossing_by_pairs(&at_a, &at_b), None);
     }
 
     #[test]

@@ -41,7 +41,7 @@ pub(crate) use center::{normal_of_facet, power_center_of_facet};
 pub use combined::{Adaptive, Fixed, Interval, Lattice, Wide};
 pub use formula::{
     CompareDistance, DotProduct, InCircle, InCircleOfPlane, InSphere, Orientation2, Orientation3,
-    crossing, twice_area,
+    PointArea, crossing, crossing_by, twice_area,
 };
 pub(crate) use formula::{facet_volumes, largest_minus};
 pub use pixel_sides::{CornerSide, CrossingSide};
