@@ -28,9 +28,9 @@ def ground(tmp_path, monkeypatch):
 def results(points, **memory):
     """What all functions say of a surface."""
     at = [[3.5, 4.25], [77, 80], [60.5, 129]]
-    along = [[[1.5, 2], [100, 131], [140, 20]]]
+    along = [[[1.5, 2], [100, 131], [120, 20]]]
     sampled = breakline.sample(points, at, add=["height", "slope"], **memory)
-    checked = breakline.accuracy(points, [[*q, 4] for q in at], **memory)
+    checked = breakline.accuracy(points, [[x + 0.5, 10, 4] for x in range(40)], **memory)
     heights = breakline.profile(points, along=along, **memory)
     draped = breakline.drape(points, lines=along, **memory)
     volumes = breakline.volume(points, levels=[2, 9], **memory)
@@ -38,8 +38,12 @@ def results(points, **memory):
     compared = breakline.compare(points, flat, resolution=5, **memory)
     return [
         {name: values.tolist() for name, values in sampled.items()},
-        repr(checked.sets), [of.tobytes() for line in heights for of in line.surfaces[0]], [of.tobytes() for line in draped for of in line], repr(volumes), np.array(compared.difference).tobytes(),
-    ]  # fmt: skip
+        repr(checked.sets),
+        [part.tobytes() for line in heights for part in line.surfaces[0]],
+        [part.tobytes() for line in draped for part in line],
+        repr(volumes),
+        np.array(compared.raster).tobytes(),
+    ]
 
 
 def test_larger_points_give_the_same(ground):
