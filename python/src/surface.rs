@@ -93,8 +93,8 @@ impl Surface {
         .map(Surface::of)
     }
 
-    /// Builds one of `count` TINs of points and lines that are only asked: in files if it needs more
-    /// than its share of the memory.
+    /// Builds one of `count` TINs of points and lines that are only asked: in files if it needs
+    /// more than its share of the memory.
     #[staticmethod]
     #[allow(clippy::too_many_arguments)] // as Python passes them
     fn ask(

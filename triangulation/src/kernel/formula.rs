@@ -357,8 +357,8 @@ impl PointArea {
     }
 }
 
-/// Returns the [`crossing`] of segment `a b` and the line through `c` and `d`, of whose areas at `a`
-/// and at `b` as much is given as can be.
+/// Returns the [`crossing`] of segment `a b` and the line through `c` and `d`, with the same bits.
+/// The areas are those of `a` and of `b`, as [`PointArea::new`] returns them.
 #[inline]
 pub fn crossing_by(
     [a, b]: [[f64; 2]; 2],
