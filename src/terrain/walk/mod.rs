@@ -15,7 +15,7 @@ use self::rim::{RimEdge, on_rim};
 use self::segment::Segment;
 use self::step::{At, Steps};
 pub(crate) use self::stepped::stepped;
-use self::turns::in_turns;
+use self::turns::{Ground, in_turns};
 use super::boxes::Boxes;
 use super::linear::gradient;
 use crate::data::{Stretch, Surface};
@@ -139,7 +139,13 @@ impl<'a> Locator<'a> {
     /// That of [`along`](Self::along) for each. Faster together than one by one: while memory
     /// answers for one line, others go on.
     pub fn along_each<L: AsRef<[[f64; 2]]>>(&self, lines: &[L]) -> Result<Vec<Vec<Stretch>>> {
-        in_turns(self, &lines.iter().map(AsRef::as_ref).collect::<Vec<_>>())
+        let lines: Vec<&[[f64; 2]]> = lines.iter().map(AsRef::as_ref).collect();
+        let ground = Ground {
+            surface: self.surface,
+            rim: &self.rim,
+            locate: &|q, steps| self.locate(q, steps),
+        };
+        in_turns(&ground, &lines)
     }
 
     /// Returns where a position is, by a walk from a face near to it.

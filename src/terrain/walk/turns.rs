@@ -1,23 +1,32 @@
 //! Several lines that are followed in turns.
 
-use super::Locator;
 use super::follow::Follow;
+use super::rim::RimEdge;
 use super::segment::Segment;
 use super::step::{At, Exit, Steps};
 use super::stretches::Stretches;
-use crate::data::{FaceAcross, Stretch};
+use crate::data::{FaceAcross, Stretch, Surface};
 use crate::error::{Error, Result};
+use crate::terrain::boxes::Boxes;
 
 /// How many lines take turns.
 ///
 /// `PERF:` memory answers within the time that this many crossings take.
 const AT_ONCE: usize = 8;
 
+/// The surface that lines are followed over.
+pub(super) struct Ground<'a> {
+    pub(super) surface: &'a dyn Surface,
+    pub(super) rim: &'a Boxes<RimEdge>,
+    /// Returns where a position is.
+    pub(super) locate: &'a dyn Fn([f64; 2], &mut Steps<'_>) -> At,
+}
+
 /// Returns the parts of each line that are on a surface.
 ///
 /// # Errors
 /// If a coordinate is not finite, the faces overlap, or the surface was found damaged.
-pub(super) fn in_turns(locator: &Locator<'_>, lines: &[&[[f64; 2]]]) -> Result<Vec<Vec<Stretch>>> {
+pub(super) fn in_turns(ground: &Ground<'_>, lines: &[&[[f64; 2]]]) -> Result<Vec<Vec<Stretch>>> {
     let mut found = vec![Vec::new(); lines.len()];
     let mut waiting = lines.iter().enumerate();
     let mut walks: Vec<Walk<'_>> = Vec::with_capacity(AT_ONCE.min(lines.len()));
@@ -25,12 +34,12 @@ pub(super) fn in_turns(locator: &Locator<'_>, lines: &[&[[f64; 2]]]) -> Result<V
         while walks.len() < AT_ONCE
             && let Some((number, line)) = waiting.next()
         {
-            let mut walk = Walk::new(locator, number, line)?;
-            walk.to_edge(locator)?;
+            let mut walk = Walk::new(ground, number, line)?;
+            walk.to_edge(ground)?;
             walks.push(walk);
         }
         if walks.is_empty() {
-            locator.surface.ensure_intact()?;
+            ground.surface.ensure_intact()?;
             return Ok(found);
         }
         // `PERF:` all are asked for first, so that memory answers for several lines at a time.
@@ -40,7 +49,7 @@ pub(super) fn in_turns(locator: &Locator<'_>, lines: &[&[[f64; 2]]]) -> Result<V
         let mut i = 0;
         while let Some(walk) = walks.get_mut(i) {
             if walk.exit.is_some() {
-                walk.cross(locator)?;
+                walk.cross(ground)?;
                 i += 1;
             } else {
                 let ended = walks.swap_remove(i);
@@ -69,7 +78,7 @@ struct Walk<'a> {
 }
 
 impl<'a> Walk<'a> {
-    fn new(locator: &Locator<'a>, number: usize, line: &'a [[f64; 2]]) -> Result<Self> {
+    fn new(ground: &Ground<'a>, number: usize, line: &'a [[f64; 2]]) -> Result<Self> {
         if let Some(vertex) = line.iter().position(|p| !p.iter().all(|c| c.is_finite())) {
             let [x, y] = line[vertex];
             let number = vertex + 1;
@@ -81,7 +90,7 @@ impl<'a> Walk<'a> {
             number,
             rest: line,
             at: None,
-            steps: Steps::new(locator.surface),
+            steps: Steps::new(ground.surface),
             follow: None,
             exit: None,
             across: None,
@@ -91,29 +100,29 @@ impl<'a> Walk<'a> {
 
     /// Goes over the edge, and on to the next one.
     #[inline]
-    fn cross(&mut self, locator: &Locator<'a>) -> Result<()> {
+    fn cross(&mut self, ground: &Ground<'a>) -> Result<()> {
         if let (Some(follow), Some(exit)) = (&mut self.follow, &mut self.exit) {
             let mut take = |point| self.found.take(point);
             match follow.cross(exit, self.across.as_ref(), &mut self.steps, &mut take) {
                 Ok(true) => return Ok(()),
                 Ok(false) => {}
-                Err(at) => self.end_segment(at, locator)?,
+                Err(at) => self.end_segment(at, ground)?,
             }
         }
-        self.to_edge(locator)
+        self.to_edge(ground)
     }
 
     /// Goes on to the next edge that the line crosses, or to its end.
-    fn to_edge(&mut self, locator: &Locator<'a>) -> Result<()> {
+    fn to_edge(&mut self, ground: &Ground<'a>) -> Result<()> {
         loop {
             let mut take = |point| self.found.take(point);
             if let Some(follow) = &mut self.follow {
-                match follow.to_edge(&mut self.steps, &locator.rim, &mut take) {
+                match follow.to_edge(&mut self.steps, ground.rim, &mut take) {
                     Ok(exit) => {
                         self.exit = Some(exit);
                         return Ok(());
                     }
-                    Err(at) => self.end_segment(at, locator)?,
+                    Err(at) => self.end_segment(at, ground)?,
                 }
             }
             let [from, to, ..] = *self.rest else {
@@ -124,10 +133,10 @@ impl<'a> Walk<'a> {
                 self.rest = &self.rest[1..];
                 continue;
             };
-            self.steps = Steps::new(locator.surface);
+            self.steps = Steps::new(ground.surface);
             let start = match self.at {
                 Some(at) => at,
-                None => locator.locate(from, &mut self.steps),
+                None => (ground.locate)(from, &mut self.steps),
             };
             self.found.begin(&segment);
             let mut take = |point| self.found.take(point);
@@ -136,9 +145,9 @@ impl<'a> Walk<'a> {
     }
 
     /// Ends a segment where it has come to.
-    fn end_segment(&mut self, at: At, locator: &Locator<'_>) -> Result<()> {
+    fn end_segment(&mut self, at: At, ground: &Ground<'_>) -> Result<()> {
         if self.steps.are_endless() {
-            locator.surface.ensure_intact()?;
+            ground.surface.ensure_intact()?;
             let [x, y] = self.rest[0];
             return Err(Error::format(format!("the faces near {x} {y} overlap"))
                 .cure("a surface has one height at each position: repair it"));
