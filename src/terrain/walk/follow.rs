@@ -42,7 +42,7 @@ impl Follow {
     ///
     /// # Errors
     /// Returns where the segment ends, if it crosses none.
-    pub(super) fn to_edge(
+    pub(super) fn next_edge(
         &mut self,
         steps: &mut Steps<'_>,
         rim: &Boxes<RimEdge>,
@@ -81,7 +81,7 @@ impl Follow {
     }
 
     /// Goes over an edge, beyond which is a face, to the one that comes next. Returns true if that
-    /// is in this face; else [`to_edge`](Self::to_edge) goes on.
+    /// is in this face; else [`next_edge`](Self::next_edge) goes on.
     ///
     /// # Errors
     /// Returns where the segment ends, if it ends before.
@@ -104,14 +104,14 @@ impl Follow {
     }
 
     /// Goes on to the end of the segment, and returns where it ends.
-    pub(super) fn to_end(
+    pub(super) fn go_to_end(
         mut self,
         steps: &mut Steps<'_>,
         rim: &Boxes<RimEdge>,
         take: &mut impl FnMut(Option<[f64; 3]>),
     ) -> At {
-        let end = loop {
-            let mut exit = match self.to_edge(steps, rim, take) {
+        loop {
+            let mut exit = match self.next_edge(steps, rim, take) {
                 Ok(exit) => exit,
                 Err(at) => break at,
             };
@@ -125,7 +125,6 @@ impl Follow {
             if let Err(at) = ended {
                 break at;
             }
-        };
-        end
+        }
     }
 }

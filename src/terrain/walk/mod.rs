@@ -160,7 +160,7 @@ impl<'a> Locator<'a> {
         let start = At::Vertex { face, corner: 0 };
         let at = match Segment::new([corners[0][0], corners[0][1]], q) {
             None => start,
-            Some(segment) => Follow::new(steps, segment, start, &mut |_| ()).to_end(
+            Some(segment) => Follow::new(steps, segment, start, &mut |_| ()).go_to_end(
                 steps,
                 &self.rim,
                 &mut |_| (),

@@ -36,6 +36,17 @@ pub(super) enum Toward {
     },
 }
 
+impl Toward {
+    /// The corner of a face, through the face.
+    fn through(face: u32, corner: usize) -> Self {
+        Toward::Vertex {
+            face,
+            corner,
+            along: None,
+        }
+    }
+}
+
 /// The edge through which a segment leaves a face: opposite a corner, with its ends as the segment
 /// sees them.
 #[derive(Debug, Clone, Copy)]
@@ -50,9 +61,9 @@ impl Exit {
     /// Goes over to the edge through which the segment leaves the face across this one.
     ///
     /// # Errors
-    /// Returns the corner of that face that the segment comes to instead.
+    /// Returns that face and its corner, if the segment comes to this corner instead.
     #[inline(always)]
-    fn pass(&mut self, across: &FaceAcross, segment: &Segment) -> Result<(), Toward> {
+    fn pass(&mut self, across: &FaceAcross, segment: &Segment) -> Result<(), (u32, usize)> {
         let FaceAcross {
             number: face,
             corner,
@@ -69,11 +80,7 @@ impl Exit {
                 self.corner = (corner + 2) % 3;
             }
             Sign::Zero => {
-                return Err(Toward::Vertex {
-                    face,
-                    corner,
-                    along: None,
-                });
+                return Err((face, corner));
             }
         }
         self.face = face;
@@ -84,7 +91,7 @@ impl Exit {
     fn toward(mut self, across: &FaceAcross, segment: &Segment) -> Toward {
         match self.pass(across, segment) {
             Ok(()) => Toward::Edge(self),
-            Err(vertex) => vertex,
+            Err((face, corner)) => Toward::through(face, corner),
         }
     }
 }
@@ -211,7 +218,8 @@ impl<'a> Steps<'a> {
         let Some(across) = across else {
             return Some(Stepped::Reached(Event::Crossing(edge), None));
         };
-        let vertex = exit.pass(across, segment).err()?;
+        let (face, corner) = exit.pass(across, segment).err()?;
+        let vertex = Toward::through(face, corner);
         Some(Stepped::Reached(Event::Crossing(edge), Some(vertex)))
     }
 

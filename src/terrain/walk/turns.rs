@@ -35,7 +35,7 @@ pub(super) fn in_turns(ground: &Ground<'_>, lines: &[&[[f64; 2]]]) -> Result<Vec
             && let Some((number, line)) = waiting.next()
         {
             let mut walk = Walk::new(ground, number, line)?;
-            walk.to_edge(ground)?;
+            walk.next_edge(ground)?;
             walks.push(walk);
         }
         if walks.is_empty() {
@@ -109,15 +109,15 @@ impl<'a> Walk<'a> {
                 Err(at) => self.end_segment(at, ground)?,
             }
         }
-        self.to_edge(ground)
+        self.next_edge(ground)
     }
 
     /// Goes on to the next edge that the line crosses, or to its end.
-    fn to_edge(&mut self, ground: &Ground<'a>) -> Result<()> {
+    fn next_edge(&mut self, ground: &Ground<'a>) -> Result<()> {
         loop {
             let mut take = |point| self.found.take(point);
             if let Some(follow) = &mut self.follow {
-                match follow.to_edge(&mut self.steps, ground.rim, &mut take) {
+                match follow.next_edge(&mut self.steps, ground.rim, &mut take) {
                     Ok(exit) => {
                         self.exit = Some(exit);
                         return Ok(());
