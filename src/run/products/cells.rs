@@ -7,16 +7,14 @@ use crate::crs::Crs;
 use crate::data::{self, BlockSource, Colors, Frame, Grid, Rgba, Surface, Window};
 use crate::error::{Error, Result, Setting, wording};
 use crate::io::geotiff::{self, CellFormat, Overviews, RasterSummary, WriteOptions};
-use crate::io::mapped::Mapped;
 use crate::io::{Destination, png};
 use crate::run::context::notice::Notice;
 use crate::run::context::units::Units;
 use crate::run::context::watched::Watched;
 use crate::run::context::{Context, Journal, Size, Stage};
-use crate::run::sources::tin_parts::TinParts;
 use crate::terrain::{
-    CompactTin, Dem, DemOfParts, FaceSlopes, Gradient, GradientMap, GradientSource, Hillshade,
-    Light, Method, Quantity, QuantityMap, Shading,
+    Dem, FaceSlopes, Gradient, GradientMap, GradientSource, Hillshade, Light, Method, Quantity,
+    QuantityMap, Shading,
 };
 
 /// The light of a hillshade. By default it comes from the northwest, 45 degrees above the horizon.
