@@ -11,7 +11,7 @@ use super::sources::open;
 use super::verbs::targets::Targets;
 use super::verbs::{SurfaceOptions, WriteRequest};
 use super::write::{self, WriteReport, Written, WrittenOf};
-use crate::error::{Error, Result};
+use crate::error::{Error, Kind, Result};
 use crate::io::Temporary;
 use crate::terrain::Method;
 
@@ -61,11 +61,9 @@ fn in_files(
 ) -> Result<SurfaceProduct> {
     let journal = Journal::new(context);
     let parent = folder_of_large_files();
-    let folder = Temporary::folder_in(&parent).map_err(|e| {
-        Error::from(e)
-            .in_file(&parent)
-            .cure("name a folder for large files with the environment variable TMPDIR")
-    })?;
+    let elsewhere = "name a folder for large files with the environment variable TMPDIR";
+    let folder = Temporary::folder_in(&parent)
+        .map_err(|e| Error::from(e).in_file(&parent).cure(elsewhere))?;
     journal.add(Notice::BuiltInFiles {
         memory: memory.unwrap_or_else(memory::half_of_free),
         folder: folder.path().to_path_buf(),
@@ -75,7 +73,17 @@ fn in_files(
         memory,
         ..TileOptions::default()
     };
-    let report = write::for_a_while(request, &Targets::of(&index), &options, context)?;
+    let report = write::for_a_while(request, &Targets::of(&index), &options, context);
+    // The cures of a job name options that choose its folder and its cells.
+    let report = report.map_err(|e| {
+        let is_of_folder = e.path().is_some_and(|path| path.starts_with(&parent));
+        let is_full = matches!(e.kind(), Kind::Limit | Kind::Io);
+        if is_of_folder && is_full {
+            e.cure(elsewhere)
+        } else {
+            e
+        }
+    })?;
     let mut parts = open::tin_parts(&index).ok_or_else(|| not_there(&index))??;
     parts.own(folder);
     let mut notices = journal.take();

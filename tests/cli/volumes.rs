@@ -202,12 +202,24 @@ fn units_of_plan_and_heights_are_converted() {
         }
     }
     let words = ["a.xyz", "--plane", "1", "--a-srs", "EPSG:25832"];
-    let area = |unit| {
+    let areas = |unit| {
         let found = of(&folder, &[&words[..], &["--unit", unit]].concat());
-        found["rows"][0]["common_area"].as_f64().unwrap()
+        ["common_area", "slope_area"].map(|name| found["rows"][0][name].as_f64().unwrap())
     };
     let acre = 43_560.0 * 0.3048 * 0.3048;
-    assert!((area("acre-ft") * acre - area("m3")).abs() < 1e-12 * area("m3"));
+    let squares = [
+        ("m3", 1.0),
+        ("yd3", 0.9144 * 0.9144),
+        ("ft3", 0.3048 * 0.3048),
+    ];
+    for (unit, meters) in squares.into_iter().chain([("acre-ft", acre)]) {
+        for (found, expected) in areas(unit).into_iter().zip(areas("m3")) {
+            assert!(
+                (found * meters - expected).abs() < 1e-12 * expected,
+                "{unit}"
+            );
+        }
+    }
     run_in(
         &folder,
         &["volume", "a.xyz", "--plane", "1", "--unit", "yd3"],

@@ -6,8 +6,8 @@ use dashu_ratio::RBig;
 
 type Exact = [RBig; 2];
 
-/// Cut, fill, and their areas, as [`breakline::terrain::Volume`] has them; the areas are those where
-/// heights differ by more than is asked for.
+/// Cut, fill, and their areas, as [`breakline::terrain::Volume`] has them; the areas are those
+/// where heights differ by more than is asked for.
 #[derive(Debug, Default)]
 pub(crate) struct Judged {
     pub(crate) volumes: [RBig; 2],

@@ -174,9 +174,9 @@ pub(crate) fn free() -> u64 {
     left().map_or(2 << 30, |left| left.bytes)
 }
 
-/// Returns half of the free memory.
+/// Returns half of the free memory, or the little that is never asked for, if that is more.
 pub(crate) fn half_of_free() -> u64 {
-    free() / 2
+    (free() / 2).max(LITTLE)
 }
 
 /// Returns about how much memory a surface of this many points needs, with the points.

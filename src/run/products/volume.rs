@@ -17,7 +17,7 @@ use crate::run::lines::layers::{self, Layers};
 use crate::run::lines::shapes::{self, Rings, at_record};
 use crate::run::request::input::Input;
 use crate::run::sources::systems::{self, Stated, SystemOptions, reproject_first};
-use crate::terrain::{self, Interpolant, Method, Nesting, Volume, Zones};
+use crate::terrain::{self, Method, Nesting, Sampler, Volume, Zones};
 
 /// How often each face is visited for the volumes of a surface.
 const VISITS: u64 = 3;
@@ -229,7 +229,7 @@ pub fn volume(
         .transpose()?;
     let computing = Computing {
         outlines: outlines.as_ref(),
-        height_unit: scale.volume / (scale.area * scale.area.sqrt()),
+        height_unit: scale.height_unit,
         context,
     };
     let mut rows = surface.with_unlinked_faces(context, |faces| match base {
@@ -315,6 +315,8 @@ fn common_system(
 pub(super) struct Scale {
     pub(super) area: f64,
     pub(super) volume: f64,
+    /// The unit of the heights in units of the plan.
+    pub(super) height_unit: f64,
     pub(super) unit: Option<VolumeUnit>,
 }
 
@@ -329,6 +331,7 @@ impl Scale {
                 Ok(Scale {
                     area,
                     volume: area * (height / of_height),
+                    height_unit: height / plan,
                     unit: Some(unit),
                 })
             }
@@ -348,6 +351,7 @@ impl Scale {
             (None, None) => Ok(Scale {
                 area: 1.0,
                 volume: 1.0,
+                height_unit: 1.0,
                 unit: None,
             }),
         }
@@ -526,11 +530,11 @@ impl Computing<'_> {
         };
         let visits = VISITS * records.len() as u64;
         let watched = Watched::faces(surface, visits, Stage::ComputingVolumes, self.context)?;
-        let interpolant = Interpolant::new(surface, Method::Linear)?;
+        let sampler = Sampler::new(surface, Method::Linear)?;
         let mut rows = Vec::new();
         for (zone, (&record, rings)) in records.iter().zip(rings).enumerate() {
             let outline = Zones::new(std::slice::from_ref(rings))?;
-            let base = rim_base(&outline, &interpolant).map_err(|e| at_record(e, path, record))?;
+            let base = rim_base(&outline, &sampler).map_err(|e| at_record(e, path, record))?;
             let heights = highest(&base);
             let base = terrain::VolumeBase::Surface(&base);
             let mut found = self.volumes(&watched, base, Some(&outline))?;
@@ -611,14 +615,15 @@ fn level_within_rounding(volume: &mut Volume, heights: f64) {
 ///
 /// # Errors
 /// If a vertex is not on the surface.
-fn rim_base(zone: &Zones, heights: &Interpolant<'_, dyn Surface + '_>) -> Result<Mesh> {
-    let mut vertices = Vec::new();
-    for [x, y] in zone.triangles().flatten() {
-        let z = heights.height(x, y).ok_or_else(|| {
-            Error::format(format!("the outline leaves the surface at {x} {y}"))
-                .cure("draw the outline within the surface")
-        })?;
-        vertices.push([x, y, z]);
+fn rim_base(zone: &Zones, surface: &Sampler<'_, dyn Surface + '_>) -> Result<Mesh> {
+    let corners: Vec<[f64; 2]> = zone.triangles().flatten().collect();
+    let mut vertices = Vec::with_capacity(corners.len());
+    for (sample, [x, y]) in surface.samples(&corners)?.iter().zip(corners) {
+        if !sample.is_some() {
+            let error = format!("the outline leaves the surface at {x} {y}");
+            return Err(Error::format(error).cure("draw the outline within the surface"));
+        }
+        vertices.push([x, y, sample.height]);
     }
     let faces = (0..vertices.len() as u32 / 3)
         .map(|face| [0, 1, 2].map(|k| 3 * face + k))

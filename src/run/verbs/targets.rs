@@ -334,7 +334,7 @@ pub(crate) fn require_room(need: u64, there: u64, folder: &Path, context: &Conte
             Setting::Extent,
             "), or a folder on another disk (",
             Setting::Job,
-            "; TMPDIR for a surface that is only asked)"
+            ")"
         ]));
     }
     if need as f64 > room {

@@ -13,7 +13,7 @@ use super::verbs::OutputArgs;
 /// points, of which a TIN is built by the options below. Each line gets a vertex wherever it
 /// crosses an edge of a triangle, so that it lies on the surface everywhere. Attributes are kept;
 /// heights of the lines themselves are not used. A line that leaves the surface is written as the
-/// parts that are on it, with a warning. Outputs are .shp, .geojson, .geojsonl and .dxf.
+/// parts that are on it, with a warning. Outputs are .shp, .gpkg, .geojson, .geojsonl and .dxf.
 #[derive(Debug, Clone, Args)]
 #[command(after_long_help = "\
 Example:

@@ -115,6 +115,15 @@ impl Output {
         }
     }
 
+    /// Returns the path of the file that is replaced, behind all links; `None` if the output is a
+    /// pipe or a device.
+    pub(crate) fn replaced_path(&self) -> Option<&Path> {
+        match &self.sink {
+            Sink::Renamed(_, path) => Some(path),
+            Sink::Stream | Sink::Copied(_) => None,
+        }
+    }
+
     /// Returns the file's final name.
     pub fn target(&self) -> &Path {
         &self.target

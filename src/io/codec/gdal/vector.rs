@@ -10,7 +10,7 @@ use gdal_sys::OGRwkbGeometryType as Type;
 
 use super::messages;
 use crate::crs::Crs;
-use crate::data::{Column, Layer, Shape, oriented};
+use crate::data::{Attributes, Column, Layer, Shape, Value, oriented};
 use crate::error::{Error, Result};
 use crate::io::bytes::field::{not_a_number, parse_number};
 use crate::io::bytes::watch::{Watch, unwatched};
@@ -84,6 +84,10 @@ pub fn read_layer_with(path: &Path, options: &Options, watch: Watch) -> Result<L
             dataset.driver().short_name(),
             geometry_type_to_name(source.defn().geometry_type())
         ),
+        attributes: options.keeps_attributes.then(|| Attributes {
+            names: names.clone(),
+            rows: Vec::new(),
+        }),
         fields: names,
         ..Layer::default()
     };
@@ -99,6 +103,7 @@ pub fn read_layer_with(path: &Path, options: &Options, watch: Watch) -> Result<L
         let lacks_height = add_shapes(path, &feature, fields.height, &mut layer.shapes)?;
         without_height += usize::from(lacks_height);
         add_values(path, &feature, record, &fields.columns, &mut layer)?;
+        keep_values(path, &feature, &mut layer)?;
         if is_swapped {
             layer.shapes[first..]
                 .iter_mut()
@@ -168,6 +173,36 @@ fn add_values(
         column.values.resize(shapes, value);
     }
     Ok(())
+}
+
+/// Adds all values of a record, once for each of its shapes, if they are kept.
+fn keep_values(path: &Path, feature: &Feature, layer: &mut Layer) -> Result<()> {
+    let Some(attributes) = &mut layer.attributes else {
+        return Ok(());
+    };
+    let mut row = Vec::with_capacity(attributes.names.len());
+    for field in 0..attributes.names.len() {
+        let value = feature
+            .field(field)
+            .map_err(|error| messages::error(path, error))?;
+        row.push(value.map_or(Value::Missing, kept));
+    }
+    attributes.rows.resize(layer.shapes.len(), row);
+    Ok(())
+}
+
+/// Returns a value as it is kept; what is neither a number nor a text, as a text.
+fn kept(value: FieldValue) -> Value {
+    match value {
+        FieldValue::StringValue(text) => Value::Text(text),
+        FieldValue::IntegerValue(whole) => Value::Whole(i64::from(whole)),
+        FieldValue::Integer64Value(whole) => Value::Whole(whole),
+        FieldValue::RealValue(number) => Value::Number(number),
+        FieldValue::DateValue(date) => Value::Text(date.to_string()),
+        FieldValue::DateTimeValue(time) => Value::Text(time.to_rfc3339()),
+        // Lists.
+        other => Value::Text(format!("{other:?}")),
+    }
 }
 
 /// Sets the coordinate system of a layer.

@@ -293,6 +293,15 @@ impl Form {
         vertices.for_each(|vertex| self.vertex(vertex, out));
     }
 
+    /// Appends a geometry without vertices.
+    fn empty(self, code: u32, out: &mut Vec<u8>) {
+        self.head(code, out);
+        match code {
+            POINT => self.vertex(&[f64::NAN; 3], out),
+            _ => out.extend_from_slice(&0_u32.to_le_bytes()),
+        }
+    }
+
     /// Appends the members of a geometry, or the only one alone.
     fn members<T>(
         self,
@@ -301,7 +310,11 @@ impl Form {
         out: &mut Vec<u8>,
         write: impl Fn(&T, &mut Vec<u8>),
     ) {
-        if self.is_multiple || members.len() != 1 {
+        if members.is_empty() && !self.is_multiple {
+            self.empty(single, out);
+            return;
+        }
+        if self.is_multiple || members.len() > 1 {
             self.head(several, out);
             out.extend_from_slice(&(members.len() as u32).to_le_bytes());
         }

@@ -2,10 +2,10 @@
 
 use std::fs::File;
 use std::io::Read;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use rusqlite::types::ValueRef;
-use rusqlite::{Connection, OpenFlags, OptionalExtension, Row};
+use rusqlite::{Connection, ErrorCode, OpenFlags, OptionalExtension, Row};
 
 use super::geometry;
 use crate::crs::Crs;
@@ -14,6 +14,9 @@ use crate::error::{Error, Result};
 use crate::io::bytes::field::{not_a_number, parse_number};
 use crate::io::bytes::watch::Watch;
 use crate::io::options::layer::{Fields, Options};
+
+/// How each database begins.
+const MAGIC: &[u8] = b"SQLite format 3\0";
 
 /// Records that are read between two looks at the watch.
 const RECORDS_AT_ONCE: usize = 1024;
@@ -42,13 +45,27 @@ pub fn read_layer_with(path: &Path, options: &Options, watch: Watch) -> Result<L
 
 /// Returns the error of a database that cannot be read.
 fn damaged(error: rusqlite::Error) -> Error {
-    Error::format(format!("SQLite: {error}"))
+    let cannot_open = error.sqlite_error_code() == Some(ErrorCode::CannotOpen);
+    let stated = Error::format(format!("SQLite: {error}"));
+    match cannot_open {
+        true => stated.cure(
+            "changes may be in a log beside it (-wal): copy both to a folder that can be written",
+        ),
+        false => stated,
+    }
 }
 
 fn open(path: &Path) -> Result<Connection> {
-    check_size(path)?;
+    let changes = check_head(path)?;
     let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-    let database = Connection::open_with_flags(path, flags).map_err(damaged)?;
+    let has_log = std::fs::metadata(log_of(path)).is_ok_and(|log| log.len() > 0);
+    // Without a log SQLite would write an empty one beside the file, and leave it there.
+    let uri = (changes == Changes::InLog && !has_log).then(|| as_uri(path));
+    let database = match uri.flatten() {
+        Some(uri) => Connection::open_with_flags(uri, flags | OpenFlags::SQLITE_OPEN_URI),
+        None => Connection::open_with_flags(path, flags),
+    };
+    let database = database.map_err(damaged)?;
     // Views and triggers of a file call no functions that have effects.
     database
         .execute_batch("PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON;")
@@ -56,13 +73,28 @@ fn open(path: &Path) -> Result<Connection> {
     Ok(database)
 }
 
-/// Returns an error if the last page is not whole: SQLite would take what is missing as zeros.
-fn check_size(path: &Path) -> Result<()> {
+/// How a database keeps changes until they are in its file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Changes {
+    InFile,
+    /// In a log beside the file, which each reader needs, too.
+    InLog,
+}
+
+/// Returns how changes are kept.
+///
+/// # Errors
+/// If the file is no database, or its last page is not whole: SQLite would take what is missing as
+/// zeros.
+fn check_head(path: &Path) -> Result<Changes> {
     let mut file = File::open(path)?;
-    let mut head = [0; 18];
-    // A shorter one is no database; SQLite says so.
-    if file.read_exact(&mut head).is_err() {
-        return Ok(());
+    let mut head = [0; 20];
+    let is_read = file.read_exact(&mut head).is_ok();
+    if !is_read || !head.starts_with(MAGIC) {
+        return Err(Error::format(
+            "it does not begin as an SQLite database does, which a GeoPackage is",
+        )
+        .cure("fetch the file again: this may be a page or a pointer in its place"));
     }
     let page = match u64::from(u16::from_be_bytes([head[16], head[17]])) {
         1 => 1 << 16,
@@ -74,7 +106,32 @@ fn check_size(path: &Path) -> Result<()> {
             "{size} bytes are no whole number of pages, which have {page}: it is cut"
         )));
     }
-    Ok(())
+    Ok(match head[18..] {
+        [2, 2] => Changes::InLog,
+        _ => Changes::InFile,
+    })
+}
+
+/// Returns the path of the log of a database.
+fn log_of(path: &Path) -> PathBuf {
+    let mut log = path.as_os_str().to_owned();
+    log.push("-wal");
+    log.into()
+}
+
+/// Returns a path as SQLite takes it with parameters.
+fn as_uri(path: &Path) -> Option<String> {
+    let absolute = std::path::absolute(path).ok()?;
+    let mut uri = "file:".to_owned();
+    for byte in absolute.to_str()?.bytes() {
+        match byte {
+            b'/' | b'.' | b'-' | b'_' | b'0'..=b'9' | b'a'..=b'z' | b'A'..=b'Z' => {
+                uri.push(char::from(byte));
+            }
+            _ => uri += &format!("%{byte:02x}"),
+        }
+    }
+    Some(uri + "?immutable=1")
 }
 
 /// Returns a name as SQL has it.
@@ -85,7 +142,8 @@ pub(super) fn quoted(name: &str) -> String {
 /// A column of a table.
 struct Field {
     name: String,
-    is_truth: bool,
+    /// The type that the table states.
+    kind: String,
 }
 
 /// What is read of a database.
@@ -131,12 +189,22 @@ impl Source {
         let (table, geometry, kind, system) = layers.into_iter().nth(at).unwrap_or_default();
         let mut key = None;
         let mut fields = Vec::new();
-        for (name, kind, is_key) in columns(database, &table)? {
-            if is_key {
+        let columns = columns(database, &table)?;
+        if !columns
+            .iter()
+            .any(|(name, ..)| name.eq_ignore_ascii_case(&geometry))
+        {
+            return Err(Error::format(format!(
+                "layer {table} has no column {geometry}, which is to have the geometries"
+            )));
+        }
+        // Only a whole number is an identifier of the standard; other keys are attributes.
+        let keys = columns.iter().filter(|(.., is_key)| *is_key).count();
+        for (name, kind, is_key) in columns {
+            if is_key && keys == 1 && kind.eq_ignore_ascii_case("INTEGER") {
                 key = Some(name);
             } else if !name.eq_ignore_ascii_case(&geometry) {
-                let is_truth = kind.eq_ignore_ascii_case("BOOLEAN");
-                fields.push(Field { name, is_truth });
+                fields.push(Field { name, kind });
             }
         }
         Ok(Source {
@@ -178,7 +246,11 @@ impl Source {
             }
             record += 1;
             let added = self.add(row, &fields, &mut layer);
-            without_height += usize::from(added.map_err(|e| e.at(format!("record {record}")))?);
+            without_height += usize::from(added.map_err(|e| e.at(self.place(row, record)))?);
+        }
+        for field in self.bytes_lost(&layer) {
+            let lost = format!("attribute {field} has bytes, which are left out");
+            layer.warnings.push(lost.into());
         }
         if without_height > 0 {
             let lacking = "records without a number in the field of the heights";
@@ -189,10 +261,33 @@ impl Source {
         Ok(layer)
     }
 
-    /// Returns the query for the geometry, and after it the attributes.
+    /// Returns what messages call a record: its identifier as other programs show it, or its
+    /// position, counted from 1.
+    fn place(&self, row: &Row, record: usize) -> String {
+        let key = self.key.as_ref().map(|name| (name, self.fields.len() + 1));
+        match key.and_then(|(name, at)| Some((name, row.get::<_, i64>(at).ok()?))) {
+            Some((name, value)) => format!("layer {}, {name} {value}", self.table),
+            None => format!("layer {}, record {record}", self.table),
+        }
+    }
+
+    /// Returns the attributes of bytes, which are kept as missing values.
+    fn bytes_lost(&self, layer: &Layer) -> Vec<&str> {
+        let is_of_bytes = |field: &&Field| field.kind.to_ascii_uppercase().contains("BLOB");
+        let fields = self.fields.iter().filter(is_of_bytes);
+        let is_kept = layer.attributes.is_some();
+        fields
+            .filter(|_| is_kept)
+            .map(|field| &*field.name)
+            .collect()
+    }
+
+    /// Returns the query for the geometry, after it the attributes, and the key.
     fn query(&self) -> String {
         let fields = self.fields.iter().map(|field| &field.name);
-        let columns = std::iter::once(&self.geometry).chain(fields);
+        let columns = std::iter::once(&self.geometry)
+            .chain(fields)
+            .chain(&self.key);
         let columns: Vec<String> = columns.map(|name| quoted(name)).collect();
         let mut query = format!("SELECT {} FROM {}", columns.join(", "), quoted(&self.table));
         if let Some(key) = &self.key {
@@ -221,7 +316,8 @@ impl Source {
         }
         if let Some(attributes) = &mut layer.attributes {
             let values = self.fields.iter().enumerate();
-            let values = values.map(|(at, field)| Ok(kept(value(at)?, field.is_truth)));
+            let is_truth = |field: &Field| field.kind.eq_ignore_ascii_case("BOOLEAN");
+            let values = values.map(|(at, field)| Ok(kept(value(at)?, is_truth(field))));
             attributes
                 .rows
                 .resize(count, values.collect::<Result<_>>()?);
@@ -240,9 +336,9 @@ impl Source {
                      FROM gpkg_spatial_ref_sys WHERE srs_id = ?1";
         let found = database.query_row(query, [self.system], |row| {
             Ok((
-                row.get::<_, String>(0)?,
-                row.get::<_, i64>(1)?,
-                row.get::<_, String>(2)?,
+                row.get::<_, Option<String>>(0)?.unwrap_or_default(),
+                row.get::<_, Option<i64>>(1)?.unwrap_or_default(),
+                row.get::<_, Option<String>>(2)?.unwrap_or_default(),
             ))
         });
         let Some((organization, code, definition)) = found.optional().map_err(damaged)? else {
@@ -274,7 +370,7 @@ fn columns(database: &Connection, table: &str) -> Result<Vec<(String, String, bo
     let query = "SELECT name, type, pk FROM pragma_table_info(?1)";
     let mut statement = database.prepare(query).map_err(damaged)?;
     let columns = statement.query_map([table], |row| {
-        Ok((row.get(0)?, row.get(1)?, row.get::<_, i64>(2)? == 1))
+        Ok((row.get(0)?, row.get(1)?, row.get::<_, i64>(2)? > 0))
     });
     columns.and_then(Iterator::collect).map_err(damaged)
 }

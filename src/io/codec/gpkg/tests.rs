@@ -180,8 +180,8 @@ fn the_same_data_gives_the_same_bytes() {
 fn a_pipe_is_refused_at_once() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.gpkg");
-    let made = std::process::Command::new("mkfifo").arg(&path).status();
-    assert!(made.unwrap().success());
+    let status = std::process::Command::new("mkfifo").arg(&path).status();
+    assert!(status.unwrap().success());
     let error = write_contours(&path, &mut std::iter::empty(), None).unwrap_err();
     assert!(
         error
@@ -248,7 +248,7 @@ fn layers_are_named_and_requests_refused() {
                 columns: &["T"],
                 ..Options::default()
             },
-            "record 1: field T: expected a number, found 'oak'",
+            "layer a, fid 1: field T: expected a number, found 'oak'",
         ),
     ] {
         let error = with(options).unwrap_err().to_string();
@@ -280,7 +280,7 @@ fn layers_are_named_and_requests_refused() {
     assert!(
         error
             .to_string()
-            .contains("record 2: a geometry that ends too early"),
+            .contains("layer b, fid 2: a geometry that ends too early"),
         "{error}"
     );
     database
@@ -294,7 +294,7 @@ fn layers_are_named_and_requests_refused() {
     assert!(
         error
             .to_string()
-            .contains("record 2: Integer in place of a geometry"),
+            .contains("layer b, fid 3: Integer in place of a geometry"),
         "{error}"
     );
     let plain = folder.path().join("plain.gpkg");
@@ -338,4 +338,90 @@ fn damage_is_an_error() {
         std::fs::write(&broken, &whole[..whole.len() * part / 200 - part % 2]).unwrap();
         assert!(read_layer_with(&broken, &Options::default(), &unwatched).is_err());
     }
+}
+
+#[test]
+fn a_system_with_heights_keeps_both() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("c.gpkg");
+    let crs = Crs::from_user("EPSG:26918+6360").unwrap();
+    assert!(crs.vertical_unit.is_some());
+    write_contours(&path, &mut std::iter::empty(), Some(&crs)).unwrap();
+    let found = read(&path).crs.unwrap();
+    assert!(found.is_same(&crs));
+    assert_eq!(found.vertical_unit, crs.vertical_unit);
+}
+
+#[test]
+fn numbers_among_texts_keep_their_digits() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.gpkg");
+    let values = [
+        Value::Text("x".to_owned()),
+        Value::Number(0.1 + 0.2),
+        Value::Truth(true),
+    ];
+    let layer = Layer {
+        shapes: vec![
+            Shape::Points(Vec::new()),
+            line(&[[0.0; 3], [1.0; 3]]),
+            Shape::Lines(Vec::new()),
+        ],
+        attributes: Some(Attributes {
+            names: vec!["a".to_owned()],
+            rows: values.map(|value| vec![value]).into(),
+        }),
+        ..Layer::default()
+    };
+    write_lines(&path, &layer).unwrap();
+    let found = read(&path);
+    let texts = ["x", "0.30000000000000004", "true"].map(|text| vec![Value::Text(text.to_owned())]);
+    assert_eq!(found.attributes.unwrap().rows, texts);
+    assert_eq!(found.shapes[0], layer.shapes[0]);
+    assert_eq!(found.shapes[2], line(&[]));
+}
+
+/// A log beside the file that is replaced is that of the old database.
+#[cfg(unix)]
+#[test]
+fn a_log_of_the_file_before_goes() {
+    let folder = tempfile::tempdir().unwrap();
+    let [real, link] = ["REAL.GPKG", "link.gpkg"].map(|name| folder.path().join(name));
+    write_contours(&real, &mut std::iter::empty(), None).unwrap();
+    std::os::unix::fs::symlink(&real, &link).unwrap();
+    std::fs::write(folder.path().join("REAL.GPKG-wal"), "of the old one").unwrap();
+    write_contours(&link, &mut std::iter::empty(), None).unwrap();
+    let mut names: Vec<_> = std::fs::read_dir(folder.path())
+        .unwrap()
+        .map(|e| e.unwrap().file_name())
+        .collect();
+    names.sort();
+    assert_eq!(names, ["REAL.GPKG", "link.gpkg"]);
+}
+
+/// As a copy of a database that another program had open: nothing is written beside it.
+#[test]
+fn a_database_with_a_log_is_read_without_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("with log 50%?#.gpkg");
+    let contour = ContourLine {
+        level: 7.0,
+        points: vec![[0.0, 1.0], [2.0, 3.0]],
+    };
+    write_contours(&path, &mut std::iter::once(contour), None).unwrap();
+    let database = Connection::open(&path).unwrap();
+    database
+        .query_row("PRAGMA journal_mode = WAL", [], |_| Ok(()))
+        .unwrap();
+    drop(database);
+    assert_eq!(read(&path).shapes.len(), 1);
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    std::fs::write(&path, "version https://git-lfs.github.com/spec/v1").unwrap();
+    let error = read_layer_with(&path, &Options::default(), &unwatched).unwrap_err();
+    assert!(
+        error
+            .to_string()
+            .contains("does not begin as an SQLite database"),
+        "{error}"
+    );
 }

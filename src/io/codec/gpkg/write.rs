@@ -1,6 +1,7 @@
 //! Writing: one layer to a new file.
 
 use std::collections::BTreeSet;
+use std::path::PathBuf;
 
 use rusqlite::types::{ToSql, ToSqlOutput, ValueRef};
 use rusqlite::{Connection, OpenFlags, Statement, params, params_from_iter};
@@ -17,7 +18,10 @@ use crate::io::codec::contour_summary::ContourSummary;
 const KEY: &str = "fid";
 const GEOMETRY: &str = "geom";
 
-/// The number of systems that have no code of EPSG.
+/// The attributes that a table of SQLite has room for, beside the key and the geometry.
+const MOST_COLUMNS: usize = 1998;
+
+/// The number of a system that is stated by its text.
 const OWN_SYSTEM: i32 = 100_000;
 
 /// The number of an unknown system with coordinates in a plane.
@@ -159,7 +163,17 @@ pub fn write_contours<'a>(
 /// As [`write_contours`].
 pub fn write_lines<'a>(target: impl Into<Destination<'a>>, layer: &Layer) -> Result<Vec<String>> {
     let mut warnings = Vec::new();
+    let target = target.into();
     let columns = columns(layer, &mut warnings);
+    if columns.len() > MOST_COLUMNS {
+        let error = format!(
+            "{} attributes, where a GeoPackage has room for {MOST_COLUMNS}",
+            columns.len()
+        );
+        return Err(Error::limit(error)
+            .in_file(target.path())
+            .cure("write GeoJSON, or remove attributes"));
+    }
     let shapes = || layer.shapes.iter();
     let head = Head {
         kind: kind(layer),
@@ -168,7 +182,7 @@ pub fn write_lines<'a>(target: impl Into<Destination<'a>>, layer: &Layer) -> Res
         columns,
         crs: layer.crs.as_ref(),
     };
-    write(target.into(), &head, |out| {
+    write(target, &head, |out| {
         for (i, shape) in shapes().enumerate() {
             let mut bounds = Bounds::default();
             shape.vertices().for_each(|p| bounds.add(*p));
@@ -271,10 +285,14 @@ fn write<T>(
     let path = output.hidden_path().ok_or_else(no_file)?;
     let name = target.path().file_stem().unwrap_or_default();
     let name = name.to_string_lossy();
-    // Names with this beginning are those of the standard's own tables.
-    let name = match name.get(..5) {
-        Some(start) if start.eq_ignore_ascii_case("gpkg_") => format!("layer_{name}"),
-        _ => name.into_owned(),
+    // Names with these beginnings are those of the standard's own tables, and of SQLite's.
+    let begins = |with: &str| {
+        let start = name.get(..with.len());
+        start.is_some_and(|start| start.eq_ignore_ascii_case(with))
+    };
+    let name = match ["gpkg_", "rtree_", "sqlite_"].into_iter().any(begins) {
+        true => format!("layer_{name}"),
+        false => name.into_owned(),
     };
     let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
     let write = || {
@@ -284,9 +302,13 @@ fn write<T>(
         Ok(written)
     };
     let written = write().map_err(|error: Error| error.in_file(target.path()))?;
-    // Changes that another file of this name was to have.
-    let stale = ["gpkg-wal", "gpkg-shm", "gpkg-journal"];
-    let stale = stale.map(|extension| target.path().with_extension(extension));
+    // Changes that the file that is replaced was to have: SQLite would make them in the new one.
+    let replaced = output.replaced_path().unwrap_or(target.path()).as_os_str();
+    let stale = ["-wal", "-shm", "-journal"].map(|end| {
+        let mut path = replaced.to_owned();
+        path.push(end);
+        PathBuf::from(path)
+    });
     target.put_all([], output, stale)?;
     Ok(written)
 }
@@ -328,7 +350,7 @@ fn fill<T>(
         count: 0,
         bounds: Bounds::default(),
         geometry: Vec::new(),
-        columns: head.columns.len(),
+        types: head.columns.iter().map(|&(_, kind)| kind).collect(),
     };
     let written = add(&mut records)?;
     let Bounds { min, max } = records.bounds;
@@ -398,11 +420,11 @@ fn triggers(name: &str, table: &str) -> String {
 /// number of the latter.
 fn add_systems(database: &Connection, crs: Option<&Crs>) -> Result<i32> {
     let add = |crs: &Crs, number: i32| {
-        let (organization, code) = match crs.epsg {
-            Some(code) => ("EPSG", i64::from(code)),
-            None => ("NONE", i64::from(number)),
+        let organization = match number {
+            OWN_SYSTEM => "NONE",
+            _ => "EPSG",
         };
-        let values = params![crs.name, number, organization, code, crs.to_wkt()];
+        let values = params![crs.name, number, organization, number, crs.to_wkt()];
         let add = "INSERT OR IGNORE INTO gpkg_spatial_ref_sys VALUES (?, ?, ?, ?, ?, NULL)";
         database.execute(add, values).map_err(unwritten)
     };
@@ -410,7 +432,9 @@ fn add_systems(database: &Connection, crs: Option<&Crs>) -> Result<i32> {
     let Some(crs) = crs else {
         return Ok(UNKNOWN_SYSTEM);
     };
-    let code = crs.epsg.and_then(|code| i32::try_from(code).ok());
+    // The code is that of the plan: heights of a stated system are in the text alone.
+    let code = crs.epsg.filter(|_| crs.vertical_unit.is_none());
+    let code = code.and_then(|code| i32::try_from(code).ok());
     let number = code.unwrap_or(OWN_SYSTEM);
     add(crs, number)?;
     Ok(number)
@@ -424,7 +448,7 @@ struct Records<'a> {
     count: i64,
     bounds: Bounds,
     geometry: Vec<u8>,
-    columns: usize,
+    types: Vec<&'static str>,
 }
 
 impl Records<'_> {
@@ -438,8 +462,15 @@ impl Records<'_> {
             false => Cell::Value(&Value::Missing),
         };
         let missing = std::iter::repeat(&Value::Missing);
-        let values = values.iter().chain(missing).take(self.columns);
-        let cells = std::iter::once(geometry).chain(values.map(Cell::Value));
+        let values = values.iter().chain(missing).zip(&self.types);
+        let cells = values.map(|(value, kind)| match (value, *kind) {
+            // SQLite would write a number among texts with 15 digits.
+            (Value::Whole(_) | Value::Number(_) | Value::Truth(_), "TEXT") => {
+                Cell::Text(value.text())
+            }
+            _ => Cell::Value(value),
+        });
+        let cells = std::iter::once(geometry).chain(cells);
         self.insert
             .execute(params_from_iter(cells))
             .map_err(unwritten)?;
@@ -458,12 +489,14 @@ impl Records<'_> {
 enum Cell<'a> {
     Geometry(&'a [u8]),
     Value(&'a Value),
+    Text(String),
 }
 
 impl ToSql for Cell<'_> {
     fn to_sql(&self) -> rusqlite::Result<ToSqlOutput<'_>> {
         Ok(ToSqlOutput::Borrowed(match self {
             Cell::Geometry(bytes) => ValueRef::Blob(bytes),
+            Cell::Text(text) => ValueRef::Text(text.as_bytes()),
             Cell::Value(Value::Missing) => ValueRef::Null,
             Cell::Value(Value::Whole(whole)) => ValueRef::Integer(*whole),
             Cell::Value(Value::Number(number)) => ValueRef::Real(*number),
