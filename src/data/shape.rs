@@ -67,6 +67,7 @@ pub enum ShapeKind {
 
 impl Shape {
     /// Returns the faces of a surface if all are triangles, else a polygon with the rings of all.
+    #[cfg(any(feature = "gdal", feature = "gpkg"))]
     pub(crate) fn of_faces(faces: Vec<Vec<Vec<[f64; 3]>>>) -> Self {
         let is_triangle =
             |face: &Vec<Vec<[f64; 3]>>| matches!(&face[..], [ring] if ring.len() == 4);

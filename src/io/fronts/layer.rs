@@ -6,6 +6,7 @@ use crate::data::Layer;
 use crate::error::{Error, Feature, Result, wording};
 use crate::io::bytes::output::Destination;
 use crate::io::bytes::watch::{Watch, unwatched};
+use crate::io::codec::gpkg;
 use crate::io::formats::{self, FormatReader, Product, Writers};
 use crate::io::options::cut::OnDamage;
 pub use crate::io::options::layer::Options;
@@ -169,9 +170,10 @@ pub fn write_lines<'a>(target: impl Into<Destination<'a>>, layer: &Layer) -> Res
 
 /// Returns the error for formats that only GDAL may read.
 fn unsupported(path: &Path) -> Error {
-    Error::unsupported(
-        "not a vector format of this build, which reads shapefiles (.shp), GeoJSON (.geojson) and GeoPackage (.gpkg)",
-    )
+    Error::unsupported(match gpkg::IS_AVAILABLE {
+        true => "not a vector format of this build, which reads shapefiles (.shp), GeoJSON (.geojson) and GeoPackage (.gpkg)",
+        false => "not a vector format of this build, which reads shapefiles (.shp) and GeoJSON (.geojson)",
+    })
     .in_file(path)
     .cure(wording![
         "build with ",

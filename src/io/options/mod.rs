@@ -3,5 +3,7 @@
 pub(crate) mod cut;
 pub(crate) mod las;
 pub(crate) mod layer;
+#[cfg(any(feature = "gdal", feature = "gpkg"))]
+pub(crate) mod layers;
 pub(crate) mod plot;
 pub(crate) mod points;

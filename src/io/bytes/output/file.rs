@@ -108,6 +108,7 @@ impl Output {
 
     /// Returns the path of the hidden file, for formats that a library writes by path; `None` if
     /// the output is a pipe or a device.
+    #[cfg(feature = "gpkg")]
     pub(crate) fn hidden_path(&self) -> Option<&Path> {
         match &self.sink {
             Sink::Renamed(temporary, _) => Some(temporary.path()),
@@ -117,6 +118,7 @@ impl Output {
 
     /// Returns the path of the file that is replaced, behind all links; `None` if the output is a
     /// pipe or a device.
+    #[cfg(feature = "gpkg")]
     pub(crate) fn replaced_path(&self) -> Option<&Path> {
         match &self.sink {
             Sink::Renamed(_, path) => Some(path),

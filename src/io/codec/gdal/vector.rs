@@ -14,7 +14,8 @@ use crate::data::{Attributes, Column, Layer, Shape, Value, oriented};
 use crate::error::{Error, Result};
 use crate::io::bytes::field::{not_a_number, parse_number};
 use crate::io::bytes::watch::{Watch, unwatched};
-use crate::io::options::layer::{Fields, Options};
+use crate::io::options::layer::Options;
+use crate::io::options::layers::Fields;
 
 /// Limit for the nesting of geometry collections; deeper ones lead to an error.
 const MAX_DEPTH: usize = 16;

@@ -13,7 +13,8 @@ use crate::data::{Attributes, Column, Layer, Shape, Value};
 use crate::error::{Error, Result};
 use crate::io::bytes::field::{not_a_number, parse_number};
 use crate::io::bytes::watch::Watch;
-use crate::io::options::layer::{Fields, Options};
+use crate::io::options::layer::Options;
+use crate::io::options::layers::Fields;
 
 /// How each database begins.
 const MAGIC: &[u8] = b"SQLite format 3\0";
@@ -246,7 +247,7 @@ impl Source {
             }
             record += 1;
             let added = self.add(row, &fields, &mut layer);
-            without_height += usize::from(added.map_err(|e| e.at(self.place(row, record)))?);
+            without_height += usize::from(added.map_err(|e| e.at(self.name_of(row, record)))?);
         }
         for field in self.bytes_lost(&layer) {
             let lost = format!("attribute {field} has bytes, which are left out");
@@ -263,7 +264,7 @@ impl Source {
 
     /// Returns what messages call a record: its identifier as other programs show it, or its
     /// position, counted from 1.
-    fn place(&self, row: &Row, record: usize) -> String {
+    fn name_of(&self, row: &Row, record: usize) -> String {
         let key = self.key.as_ref().map(|name| (name, self.fields.len() + 1));
         match key.and_then(|(name, at)| Some((name, row.get::<_, i64>(at).ok()?))) {
             Some((name, value)) => format!("layer {}, {name} {value}", self.table),
