@@ -1,3 +1,5 @@
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::{Bounds, Frame, Window, higher, lower};
@@ -73,6 +75,38 @@ impl Grid {
 /// If the raster does not fit into memory, or the source fails.
 pub fn cells(source: &dyn BlockSource) -> Result<Vec<f32>> {
     collected(source)
+}
+
+/// Like [`cells`], but of some rows.
+///
+/// # Errors
+/// Those of [`cells`].
+pub(crate) fn cells_of_rows(source: &dyn BlockSource, rows: Range<usize>) -> Result<Vec<f32>> {
+    collected(&Rows { source, rows })
+}
+
+/// Some rows of a raster.
+struct Rows<'a> {
+    source: &'a dyn BlockSource,
+    rows: Range<usize>,
+}
+
+impl BlockSource for Rows<'_> {
+    fn frame(&self) -> Frame {
+        Frame {
+            height: self.rows.len(),
+            ..self.source.frame()
+        }
+    }
+
+    fn crs(&self) -> Option<&Crs> {
+        self.source.crs()
+    }
+
+    fn fill(&self, window: Window, out: &mut [f32]) -> Result<()> {
+        let row = self.rows.start + window.row;
+        self.source.fill(Window { row, ..window }, out)
+    }
 }
 
 /// Columns and rows of the blocks of which the range is found: the tiles of most files.

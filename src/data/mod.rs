@@ -58,6 +58,7 @@ pub use columns::Columns;
 pub use contour_line::ContourLine;
 pub(crate) use frame::GridLines;
 pub use frame::{Frame, MAX_SIDE, ToPixels, Window};
+pub(crate) use grid::cells_of_rows;
 pub(crate) use grid::range_of_finite;
 pub use grid::{BlockSource, Grid, cells, range_of};
 pub use las_head::LasHead;

@@ -6,7 +6,7 @@
 //! | read points | [`points::open`] | [`las::open`], [`text::open`], [`points::from_layer`] |
 //! | write points | [`points::create`] | [`las::create`], [`text::create`] |
 //! | read lines and polygons | [`layer::read`] | [`shapefile::read_layer`], [`geojson::read_layer`], [`gpkg::read_layer_with`], [`gdal::read_layer`] |
-//! | read a raster | [`raster::open`] | [`geotiff::open`], [`gdal::open_raster`] |
+//! | read a raster | [`raster::open`] | [`geotiff::open`], [`ascii_grid::open`], [`gdal::open_raster`] |
 //! | write a raster | | [`geotiff::write()`]; as a picture: [`png::write_gray`], [`png::write_colors`] |
 //! | read a color ramp | | [`ramp::read`] |
 //! | read or write a mesh | [`mesh::read`], [`mesh::write`] | |
@@ -55,6 +55,8 @@ pub use bytes::output::{
     probe, remove_abandoned, require_absent,
 };
 pub use bytes::watch::Watch;
-pub use codec::{gdal, geojson, geotiff, gpkg, las, png, ramp, shapefile, tetgen, text, triangle};
+pub use codec::{
+    ascii_grid, gdal, geojson, geotiff, gpkg, las, png, ramp, shapefile, tetgen, text, triangle,
+};
 pub use fronts::{contours, layer, mesh, points, profiles, raster};
 pub use options::cut::OnDamage;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use breakline::data::{Frame, Grid, Layer, PointBatch, PointSource, Shape, Triangles};
 use breakline::error::Wording;
 use breakline::io::{
-    OnDamage, contours, geotiff, las, layer, mesh, points, tetgen, text, triangle,
+    OnDamage, ascii_grid, contours, geotiff, las, layer, mesh, points, tetgen, text, triangle,
 };
 use breakline::run::{self, Context, PointsRequest, Source, SurfaceRequest};
 use breakline::terrain::TinBuilder;
@@ -239,6 +239,17 @@ fn samples(folder: &Path) -> Vec<Sample> {
         Ok((bits(reader.read_grid()?.values), warnings))
     });
 
+    let text = "ncols 3\nnrows 2\nxllcorner 0.5\nyllcorner 1\ncellsize 2\n1 2.5 3\n4 -9999 6.25\n";
+    add(
+        written("a.asc", text.as_bytes()),
+        Fate::ErrorOrOpenLine,
+        |path, _| {
+            let grid = ascii_grid::open(path)?;
+            let (cells, warnings) = grid.read_grid_with(&|_| Ok(()))?;
+            Ok((bits(cells.values), warnings))
+        },
+    );
+
     let mut builder = TinBuilder::default();
     let column = |value: fn(i32) -> i32| (0..25).map(|i| f64::from(value(i))).collect::<Vec<f64>>();
     builder.add_points(
@@ -250,6 +261,10 @@ fn samples(folder: &Path) -> Vec<Sample> {
     let tin = builder.build().unwrap();
     for (name, fate) in [
         ("a.ply", Fate::Error),
+        ("a.xml", Fate::Error),
+        ("a.glb", Fate::Error),
+        ("a.nc", Fate::Error),
+        ("a.2dm", Fate::ErrorOrOpenLine),
         ("a.off", Fate::ErrorOrOpenLine),
         ("a.obj", Fate::OpenLineOnly),
     ] {

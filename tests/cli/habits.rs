@@ -40,7 +40,7 @@ fn what_cannot_be_done_names_what_can() {
             "tin -te 0 0 1 1 a.xyz -o t.ply",
             "hint: --bounds XMIN,YMIN,XMAX,YMAX clips the surface",
         ),
-        ("dem -of AAIGrid a.xyz -o d.asc", "hint: leave -of out"),
+        ("dem -of HFA a.xyz -o d.img", "hint: leave -of out"),
         (
             "dem -co COMPRESS=LZW a.xyz -o d.tif",
             "hint: leave it out: a GeoTIFF is tiled",

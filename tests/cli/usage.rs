@@ -66,7 +66,7 @@ fn wrong_usage_ends_with_2_and_leaves_nothing() {
         (&["tin", "a.xyz"], "--output"),
         (
             &["triangulate", "a.xyz", "-o", "t.tif"],
-            ".ele, .node, .poly, .edge, .neigh, .ply, .obj, .off, .stl",
+            ".ele, .node, .poly, .edge, .neigh, .ply, .obj, .off, .xml",
         ),
         (
             &[
@@ -104,7 +104,7 @@ fn wrong_usage_ends_with_2_and_leaves_nothing() {
             &["tin", "a.xyz", "-o", "t.ply", "--a-srs", "EPSG:nonsense"],
             "--a-srs",
         ),
-        (&["tin", "a.xyz", "-o", "t.dxf"], ".ply, .obj, .off, .stl"),
+        (&["tin", "a.xyz", "-o", "t.dwg"], ".ply, .obj, .off, .xml"),
         (&["tin", "a.xyz", "-o", "t"], ".ply, .obj, .off, .stl"),
         (&["dem", "a.xyz", "-o", "t.png"], ".tif"),
         (&["contour", "a.xyz", "-o", "t.dwg"], ".shp, .geojson"),

@@ -358,7 +358,8 @@ class Tin:
         threads: Optional[int] = None,
         progress: Progress = None,
     ) -> None:
-        """Write the surface as ``.tin``, ``.ply``, ``.obj``, ``.off`` or ``.stl``.
+        """Write the surface as ``.tin``, ``.ply``, ``.obj``, ``.off``, ``.stl``, ``.xml`` (LandXML),
+        ``.dxf``, ``.glb``, ``.2dm``, ``.nc`` (UGRID) or ``.cityjson``.
 
         Parameters
         ----------

@@ -361,6 +361,9 @@ pub(crate) fn note_mesh(file: &Path, written: &MeshSummary, cure: &str, console:
             "{path}: coordinates are relative to {x} {y} {z}, see {beside}"
         ));
     }
+    for note in &written.notes {
+        console.note(format_args!("{path}: {note}"));
+    }
 }
 
 /// Prints the name and size of a file that was written.

@@ -17,16 +17,16 @@ enum Family {
     Solid,
 }
 
+/// The formats of surfaces that also hold the surface of a solid; others have one height at each
+/// position.
+const OF_SOLIDS: [&str; 4] = ["ply", "obj", "off", "stl"];
+
 /// Returns the formats of the outputs.
 fn formats() -> Vec<Format<Family>> {
     let mut formats = outputs::formats_of(Product::Space, |_| Family::Cells);
     let surfaces = outputs::formats_of(Product::Surface, |_| Family::Solid);
-    // A .tin is a triangulation in the plane.
-    formats.extend(
-        surfaces
-            .into_iter()
-            .filter(|format| format.extension != "tin"),
-    );
+    let of_solids = |format: &Format<Family>| OF_SOLIDS.contains(&format.extension);
+    formats.extend(surfaces.into_iter().filter(of_solids));
     formats
 }
 

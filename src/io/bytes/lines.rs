@@ -1,4 +1,4 @@
-//! Lines of text that are made by all threads.
+//! Lines of text that are made by all threads, and rows of bytes.
 
 use std::io::{Result, Write};
 
@@ -8,6 +8,25 @@ use crate::io::Output;
 
 /// Lines that a task writes; there are as many tasks at a time as cores.
 const LINES: usize = 1 << 14;
+
+/// Rows of bytes that are put together before they are written.
+const ROWS: usize = 1 << 14;
+
+/// Writes rows of bytes, many at a time.
+pub(crate) fn write_rows<const N: usize>(
+    output: &mut dyn Write,
+    rows: impl Iterator<Item = [u8; N]>,
+) -> Result<()> {
+    let mut batch: Vec<u8> = Vec::with_capacity(N * ROWS);
+    for row in rows {
+        batch.extend_from_slice(&row);
+        if batch.len() >= N * ROWS {
+            output.write_all(&batch)?;
+            batch.clear();
+        }
+    }
+    output.write_all(&batch)
+}
 
 /// Writes one line per item, in order, using all threads.
 pub(crate) fn write_lines<T: Copy + Sync>(

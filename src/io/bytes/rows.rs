@@ -55,6 +55,15 @@ impl<'a> Rows<'a> {
         })
     }
 
+    /// Like [`next`](Self::next), but watched.
+    ///
+    /// # Errors
+    /// That of the watch.
+    pub(crate) fn next_watched(&mut self, pattern: &'static str) -> Result<Option<Row<'a>>> {
+        self.meter.left(self.rest.len())?;
+        Ok(self.next(pattern))
+    }
+
     /// Returns the next line, which should match `pattern`; `None` at the end.
     pub(crate) fn next(&mut self, pattern: &'static str) -> Option<Row<'a>> {
         while !self.rest.is_empty() {

@@ -1,7 +1,7 @@
 //! What is known of a format: how it is recognized, what it can contain, and its functions.
 
 use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::crs::Crs;
 use crate::data::{
@@ -11,10 +11,11 @@ use crate::error::{Result, Wording};
 use crate::io::bytes::mapped::Mapped;
 use crate::io::bytes::output::Destination;
 use crate::io::bytes::watch::Watch;
+use crate::io::codec::ascii_grid::AsciiGrid;
 use crate::io::codec::contour_summary::ContourSummary;
 use crate::io::codec::geotiff::{GeoTiffReader, RasterSummary};
 use crate::io::codec::las::{Detail, Rounding};
-use crate::io::codec::listing::Listing;
+use crate::io::codec::listing::{Listing, Remarks};
 use crate::io::codec::stl::Solid;
 use crate::io::codec::tetgen::Tetrahedralized;
 use crate::io::codec::triangle::Triangulated;
@@ -136,7 +137,11 @@ pub(crate) enum FormatReader {
     /// A file has any number of layers.
     Layers(ReadLayer),
     Raster(fn(&Path) -> Result<GeoTiffReader>),
+    /// Heights as text.
+    Grid(fn(&Path) -> Result<AsciiGrid>),
     Mesh(fn(&Path, Watch) -> Result<Triangles>),
+    /// Triangles of one surface of several, by its name; `None` for the only one.
+    Surfaces(fn(&Path, Option<&str>, Watch) -> Result<Triangles>),
     /// A TIN, which is not read, but used where its bytes are.
     Tin(fn(&Path) -> Result<Mapped>),
     /// The index of a surface in parts, each of which is a TIN.
@@ -163,11 +168,8 @@ impl FormatReader {
     }
 }
 
-/// A local origin: what was subtracted from all coordinates, and the file that states it.
-pub(crate) type Origin = Option<([f64; 3], PathBuf)>;
-
-pub(super) type WriteSurface = fn(Destination, &Listing, Option<&Crs>) -> Result<Origin>;
-type WriteHeights = fn(Destination, &dyn BlockSource) -> Result<RasterSummary>;
+pub(super) type WriteSurface = fn(Destination, &Listing, Option<&Crs>) -> Result<Remarks>;
+pub(crate) type WriteHeights = fn(Destination, &dyn BlockSource) -> Result<RasterSummary>;
 type WriteShades = fn(Destination, &dyn BlockSource) -> Result<()>;
 type WriteColors = fn(Destination, &dyn BlockSource, &Colors) -> Result<()>;
 type WriteSpace = fn(&[Destination], &Tetrahedralized) -> Result<()>;

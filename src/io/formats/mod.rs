@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 
 use self::format::KnownBy;
 pub use self::format::{Content, Format, Holding, Product};
-pub(crate) use self::format::{FormatReader, PointWriter, Writers};
+pub(crate) use self::format::{FormatReader, PointWriter, WriteHeights, Writers};
 pub use self::table::FORMATS;
 pub(crate) use self::table::with_gdal;
 use crate::error::{Error, Result};
@@ -189,8 +189,11 @@ impl FormatReader {
         match self {
             FormatReader::Points { .. } => "points",
             FormatReader::Layer(_) | FormatReader::Layers(_) => "lines, polygons, points",
-            FormatReader::Raster(_) => "heights",
-            FormatReader::Mesh(_) | FormatReader::Tin(_) | FormatReader::Parts(_) => "surface",
+            FormatReader::Raster(_) | FormatReader::Grid(_) => "heights",
+            FormatReader::Mesh(_)
+            | FormatReader::Surfaces(_)
+            | FormatReader::Tin(_)
+            | FormatReader::Parts(_) => "surface",
             FormatReader::Own => "points and segments",
             FormatReader::Solid(_) | FormatReader::InfoOnly => "by `info` only",
             FormatReader::Gdal => "with `gdal`",

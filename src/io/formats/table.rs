@@ -11,9 +11,10 @@ use crate::io::bytes::output::Destination;
 use crate::io::bytes::watch::bytes_of;
 use crate::io::codec::geotiff::CellFormat;
 use crate::io::codec::las::{Detail, Packing, Rounding};
+use crate::io::codec::listing::Remarks;
 use crate::io::codec::{
-    dxf, geojson, geotiff, gpkg, las, obj, off, ply, png, shapefile, stl, tetgen, text, tin,
-    triangle,
+    ascii_grid, cityjson, dxf, geojson, geotiff, glb, gpkg, landxml, las, mesh2dm, obj, off, ply,
+    png, shapefile, stl, tetgen, text, tin, triangle, ugrid, xyz_grid,
 };
 
 const NOT_WRITTEN: Writers = Writers {
@@ -386,6 +387,36 @@ pub static FORMATS: &[Format] = &[
         ..ROW
     },
     Format {
+        known_by: KnownBy::NameAndBytes,
+        holds: &[Holding::Raster, Holding::Crs],
+        beside: &["prj"],
+        parts: &["prj"],
+        read_along: &["prj"],
+        gdal_names: &["AAIGrid"],
+        reader: FormatReader::Grid(|path| ascii_grid::open(path)),
+        writers: Writers {
+            heights: Some(ascii_grid::write),
+            ..NOT_WRITTEN
+        },
+        help: "heights in cells, as text",
+        ..raster(
+            "ESRI ASCII grid",
+            "an ESRI ASCII grid",
+            &["asc"],
+            &[Magic::Word("ncols"), Magic::Word("nrows")],
+        )
+    },
+    Format {
+        known_by: KnownBy::NameAndBytes,
+        gdal_names: &["XYZ"],
+        reader: FormatReader::Unread,
+        writers: Writers {
+            heights: Some(xyz_grid::write),
+            ..NOT_WRITTEN
+        },
+        ..raster("XYZ grid", "an XYZ grid", &["xyz"], &[])
+    },
+    Format {
         name: "PNG",
         noun: "a PNG picture",
         extensions: &["png"],
@@ -414,7 +445,9 @@ pub static FORMATS: &[Format] = &[
         content: Content::Mesh,
         holds: &[Holding::Mesh, Holding::Edges, Holding::Crs],
         reader: FormatReader::Mesh(|path, watch| ply::read(&bytes_of(path, watch)?, watch)),
-        writers: surface_writer(|target, mesh, crs| ply::write(target, mesh, crs).map(|()| None)),
+        writers: surface_writer(|target, mesh, crs| {
+            ply::write(target, mesh, crs).map(|()| Remarks::default())
+        }),
         cure: AS_MESH,
         help: "triangles with breaklines and coordinate system",
         ..ROW
@@ -426,7 +459,9 @@ pub static FORMATS: &[Format] = &[
         content: Content::Mesh,
         holds: &[Holding::Mesh, Holding::Crs],
         reader: FormatReader::Mesh(|path, watch| obj::read(&bytes_of(path, watch)?, watch)),
-        writers: surface_writer(|target, mesh, crs| obj::write(target, mesh, crs).map(|()| None)),
+        writers: surface_writer(|target, mesh, crs| {
+            obj::write(target, mesh, crs).map(|()| Remarks::default())
+        }),
         cure: AS_MESH,
         help: "triangles",
         ..ROW
@@ -438,9 +473,74 @@ pub static FORMATS: &[Format] = &[
         content: Content::Mesh,
         holds: &[Holding::Mesh, Holding::Crs],
         reader: FormatReader::Mesh(|path, watch| off::read(&bytes_of(path, watch)?, watch)),
-        writers: surface_writer(|target, mesh, crs| off::write(target, mesh, crs).map(|()| None)),
+        writers: surface_writer(|target, mesh, crs| {
+            off::write(target, mesh, crs).map(|()| Remarks::default())
+        }),
         cure: AS_MESH,
         help: "triangles",
+        ..ROW
+    },
+    Format {
+        name: "LandXML",
+        noun: "a LandXML file",
+        extensions: &["xml", "landxml"],
+        content: Content::Mesh,
+        holds: &[Holding::Mesh, Holding::Edges, Holding::Crs],
+        reader: FormatReader::Surfaces(landxml::read),
+        writers: surface_writer(landxml::write),
+        cure: AS_MESH,
+        help: "surfaces with breaklines, boundaries, units and coordinate system; FILE:NAME",
+        ..ROW
+    },
+    Format {
+        name: "GLB",
+        noun: "a binary glTF file",
+        extensions: &["glb"],
+        magic: &[Magic::At(0, b"glTF")],
+        content: Content::Mesh,
+        holds: &[Holding::Mesh, Holding::Crs],
+        reader: FormatReader::Mesh(|path, watch| glb::read(&bytes_of(path, watch)?, watch)),
+        writers: surface_writer(glb::write),
+        cure: AS_MESH,
+        help: "triangles in 32-bit floats from a local origin, with normals and colors (glTF)",
+        ..ROW
+    },
+    Format {
+        name: "2DM",
+        noun: "a 2DM mesh",
+        extensions: &["2dm"],
+        magic: &[Magic::At(0, b"MESH2D")],
+        content: Content::Mesh,
+        holds: &[Holding::Mesh],
+        reader: FormatReader::Mesh(|path, watch| mesh2dm::read(&bytes_of(path, watch)?, watch)),
+        writers: surface_writer(mesh2dm::write),
+        cure: AS_MESH,
+        help: "triangles (SMS, MDAL)",
+        ..ROW
+    },
+    Format {
+        name: "UGRID",
+        noun: "a UGRID mesh",
+        extensions: &["nc"],
+        magic: &[Magic::At(0, b"CDF\x01"), Magic::At(0, b"CDF\x02")],
+        known_by: KnownBy::NameAndBytes,
+        content: Content::Mesh,
+        holds: &[Holding::Mesh, Holding::Crs],
+        reader: FormatReader::Mesh(|path, watch| ugrid::read(&bytes_of(path, watch)?, watch)),
+        writers: surface_writer(ugrid::write),
+        cure: AS_MESH,
+        help: "triangles in NetCDF (MDAL, xarray)",
+        ..ROW
+    },
+    Format {
+        name: "CityJSON",
+        noun: "a CityJSON file",
+        extensions: &["cityjson"],
+        content: Content::Mesh,
+        holds: &[Holding::Mesh, Holding::Crs],
+        reader: FormatReader::Unread,
+        writers: surface_writer(cityjson::write),
+        cure: AS_MESH,
         ..ROW
     },
     Format {
@@ -453,7 +553,12 @@ pub static FORMATS: &[Format] = &[
         parts: &["stl.origin.txt"],
         read_along: &["stl.origin.txt"],
         reader: FormatReader::Solid(stl::describe),
-        writers: surface_writer(|target, mesh, _| stl::write(target, mesh).map(Some)),
+        writers: surface_writer(|target, mesh, _| {
+            Ok(Remarks {
+                origin: Some(stl::write(target, mesh)?),
+                ..Remarks::default()
+            })
+        }),
         cure: AS_MESH,
         help: "triangles in 32-bit floats from a local origin; written only",
         ..ROW
@@ -467,7 +572,9 @@ pub static FORMATS: &[Format] = &[
         content: Content::Mesh,
         holds: &[Holding::Mesh, Holding::Edges, Holding::Crs],
         reader: FormatReader::Tin(tin::map),
-        writers: surface_writer(|target, mesh, _| tin::write(target, mesh).map(|()| None)),
+        writers: surface_writer(|target, mesh, _| {
+            tin::write(target, mesh).map(|()| Remarks::default())
+        }),
         cure: AS_MESH,
         help: "triangulation with breaklines and coordinate system, opened in milliseconds",
         ..ROW
@@ -485,6 +592,23 @@ pub static FORMATS: &[Format] = &[
         cure: AS_MESH,
         help: "index of a TIN in parts, one file for each tile; for surfaces larger than memory",
         ..ROW
+    },
+    Format {
+        reader: FormatReader::Layers(dxf::read),
+        writers: Writers {
+            surface: Some(dxf::write_surface),
+            lines: Some(dxf::write_lines),
+            ..NOT_WRITTEN
+        },
+        holds: &[
+            Holding::Points,
+            Holding::Lines,
+            Holding::Mesh,
+            Holding::Edges,
+        ],
+        gdal_names: &["DXF"],
+        help: "drawings: lines and points of a layer; surfaces and draped lines; FILE:LAYER",
+        ..vector("DXF", "a DXF drawing", &["dxf"], &[])
     },
     Format {
         reader: FormatReader::Mesh(triangle::read_triangles_with),
@@ -556,15 +680,6 @@ pub static FORMATS: &[Format] = &[
         ..space("VTU", "an unstructured grid of VTK", &["vtu"])
     },
     // Formats read by GDAL, or only named in messages.
-    Format {
-        known_by: KnownBy::NameAndBytes,
-        ..raster(
-            "Esri ASCII grid",
-            "an ESRI ASCII grid",
-            &["asc"],
-            &[Magic::Word("ncols"), Magic::Word("nrows")],
-        )
-    },
     raster(
         "GDAL virtual raster",
         "a GDAL virtual raster",
@@ -610,16 +725,15 @@ pub static FORMATS: &[Format] = &[
             Magic::At(0, b"DSRB"),
         ],
     ),
-    raster(
-        "netCDF or HDF",
-        "an HDF5 or netCDF file",
-        &[],
-        &[
-            Magic::At(0, b"CDF\x01"),
-            Magic::At(0, b"CDF\x02"),
-            Magic::At(0, b"\x89HDF"),
-        ],
-    ),
+    Format {
+        known_by: KnownBy::NameAndBytes,
+        ..raster(
+            "NetCDF 4 or HDF",
+            "an HDF5 or NetCDF 4 file",
+            &["nc"],
+            &[Magic::At(0, b"\x89HDF")],
+        )
+    },
     raster("GRIB", "a GRIB file", &[], &[Magic::At(0, b"GRIB")]),
     raster(
         "JPEG",
@@ -641,17 +755,10 @@ pub static FORMATS: &[Format] = &[
     ),
     vector(
         "XML (GML, KML)",
-        "an XML file (GML, KML, LandXML)",
+        "an XML file (GML, KML)",
         &["kml", "gml"],
         &[Magic::At(0, b"<?xml")],
     ),
-    Format {
-        writers: Writers {
-            lines: Some(dxf::write_lines),
-            ..NOT_WRITTEN
-        },
-        ..vector("DXF", "a DXF drawing", &["dxf"], &[])
-    },
     vector("file geodatabase", "a file geodatabase", &["gdb"], &[]),
     vector("DWG", "a DWG drawing", &[], &[Magic::At(0, b"AC10")]),
     Format {

@@ -86,7 +86,7 @@ pub fn file_of(text: &str) -> &Path {
 }
 
 /// Splits a text into the file and the names after it.
-fn split(text: &str) -> (&Path, Option<&str>) {
+pub(super) fn split(text: &str) -> (&Path, Option<&str>) {
     let whole = (Path::new(text), None);
     if whole.0.exists() {
         return whole;
@@ -171,8 +171,8 @@ pub fn write_lines<'a>(target: impl Into<Destination<'a>>, layer: &Layer) -> Res
 /// Returns the error for formats that only GDAL may read.
 fn unsupported(path: &Path) -> Error {
     Error::unsupported(match gpkg::IS_AVAILABLE {
-        true => "not a vector format of this build, which reads shapefiles (.shp), GeoJSON (.geojson) and GeoPackage (.gpkg)",
-        false => "not a vector format of this build, which reads shapefiles (.shp) and GeoJSON (.geojson)",
+        true => "not a vector format of this build, which reads shapefiles (.shp), GeoJSON (.geojson), GeoPackage (.gpkg) and DXF",
+        false => "not a vector format of this build, which reads shapefiles (.shp), GeoJSON (.geojson) and DXF",
     })
     .in_file(path)
     .cure(wording![
@@ -296,7 +296,7 @@ mod tests {
         std::fs::write(&path, "fgb\x03fgb").unwrap();
         let error = read(&format!("{}:roads", path.display())).unwrap_err();
         assert!(error.to_string().ends_with(
-            "a.fgb: not a vector format of this build, which reads shapefiles (.shp), GeoJSON (.geojson) and GeoPackage (.gpkg)"
+            "a.fgb: not a vector format of this build, which reads shapefiles (.shp), GeoJSON (.geojson), GeoPackage (.gpkg) and DXF"
         ));
         assert!(
             error

@@ -1,10 +1,17 @@
-//! Triangle meshes: PLY, OBJ, OFF and STL; Triangle's `.ele` is read as well.
+//! Triangle meshes: PLY, OBJ, OFF, STL, LandXML, DXF, GLB, 2DM, UGRID and CityJSON; Triangle's
+//! `.ele` is read as well.
 //!
 //! | format | coordinates | lines, coordinate system | read |
 //! |---|---|---|---|
 //! | PLY | doubles | yes | yes |
 //! | OBJ | decimals that read back as the same doubles | coordinate system, as a comment | yes |
 //! | OFF | as OBJ | as OBJ | yes |
+//! | LandXML | as OBJ | yes | yes |
+//! | DXF | as OBJ | lines | no |
+//! | GLB | 32-bit floats from a local origin | coordinate system | yes |
+//! | 2DM | as OBJ | no | yes |
+//! | UGRID | doubles | coordinate system | yes |
+//! | CityJSON | whole numbers from a local origin | the code of the coordinate system | no |
 //! | STL | 32-bit floats from a local origin | no | no |
 //! | `.ele` with its `.node` | as OBJ; heights are 0 | breaklines | yes; to write it, see [`crate::io::codec::triangle`] |
 //!
@@ -40,9 +47,10 @@ use crate::io::bytes::mapped;
 use crate::io::bytes::mapped::Mapped;
 use crate::io::bytes::output::Destination;
 use crate::io::bytes::watch::{Watch, unwatched};
-use crate::io::codec::listing::Listing;
+use crate::io::codec::listing::{Listing, Remarks};
 pub use crate::io::codec::stl::Solid;
 use crate::io::formats::{self, Content, FormatReader, Holding, Product};
+use crate::io::fronts::layer;
 
 /// What a mesh file contains, counted.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,6 +66,8 @@ pub struct MeshSummary {
     pub lost_edges: usize,
     /// What was subtracted from all coordinates, and the file next to the mesh that states it.
     pub origin: Option<([f64; 3], PathBuf)>,
+    /// What else the format cannot store.
+    pub notes: Vec<String>,
 }
 
 /// Writes a surface in the format that the extension of `target` names.
@@ -67,23 +77,28 @@ pub struct MeshSummary {
 /// damaged, or the file cannot be written.
 pub fn write<'a>(target: impl Into<Destination<'a>>, surface: &dyn Surface) -> Result<MeshSummary> {
     let target = target.into();
-    let format =
-        formats::of_name(&target.format_path()).filter(|format| format.content == Content::Mesh);
-    let format = format.ok_or_else(|| unknown(target.path()))?;
-    let Some(write) = format.writers.surface else {
-        return Err(Error::unsupported(format!(
-            "a surface is not written as .{}, which has no heights",
-            format.extensions[0]
-        ))
-        .in_file(target.path())
-        .cure(format!("use {}", formats::extensions_or(Product::Surface))));
+    let path = target.format_path();
+    let found = formats::for_output(&path, Product::Surface)
+        .and_then(|format| Some((format, format.writers.surface?)));
+    let Some((format, write)) = found else {
+        let mesh = formats::of_name(&path).filter(|format| format.content == Content::Mesh);
+        return Err(match mesh {
+            Some(format) => Error::unsupported(format!(
+                "a surface is not written as .{}, which has no heights",
+                format.extensions[0]
+            ))
+            .in_file(target.path())
+            .cure(format!("use {}", formats::extensions_or(Product::Surface))),
+            None => unknown(target.path()),
+        });
     };
     let mesh = Listing::new(surface);
-    let origin = target.put_whole(|target| {
-        let origin = write(target, &mesh, surface.crs())?;
+    let remarks = target.put_whole(|target| {
+        let remarks = write(target, &mesh, surface.crs())?;
         surface.ensure_intact()?;
-        Ok(origin)
+        Ok(remarks)
     });
+    let Remarks { origin, notes } = remarks.map_err(|e| e.in_file(target.path()))?;
     Ok(MeshSummary {
         vertices: mesh.vertex_count,
         faces: mesh.face_count,
@@ -93,7 +108,8 @@ pub fn write<'a>(target: impl Into<Destination<'a>>, surface: &dyn Surface) -> R
         } else {
             mesh.constrained_edges
         },
-        origin: origin.map_err(|e| e.in_file(target.path()))?,
+        origin,
+        notes,
     })
 }
 
@@ -184,7 +200,7 @@ pub fn describe_solid(path: &Path) -> Option<Result<Solid>> {
 /// Returns true if files with this name mark the edges that lie on breaklines. Without these marks,
 /// the Delaunay law cannot be checked.
 pub fn keeps_lines(path: &Path) -> bool {
-    formats::of_name(path).is_some_and(|format| format.can_hold(Holding::Edges))
+    formats::of_name(file_and_surface(path).0).is_some_and(|format| format.can_hold(Holding::Edges))
 }
 
 /// Reads a mesh that forms a surface, written by any program, in any format but STL.
@@ -245,8 +261,22 @@ pub fn read_vertices(path: &Path, watch: Watch) -> Result<(Vec<[f64; 3]>, Vec<Wo
 
 /// Reads a mesh, which may have no faces.
 fn parse(path: &Path, watch: Watch) -> Result<Triangles> {
-    let read = match formats::of_name(path).map(|format| (format, format.reader)) {
-        Some((_, FormatReader::Mesh(read))) => read,
+    let (file, name) = file_and_surface(path);
+    // Some share their extension with rasters.
+    let by_bytes = || formats::detect_file(file).ok().flatten();
+    let format = formats::of_name(file)
+        .or_else(by_bytes)
+        .or_else(|| formats::for_output(file, Product::Surface));
+    let read = match format.map(|format| (format, format.reader)) {
+        Some((_, FormatReader::Surfaces(read))) => {
+            return read(file, name, watch).map_err(|e| e.in_file(file));
+        }
+        Some((_, FormatReader::Mesh(read))) if name.is_none() => read,
+        Some((format, FormatReader::Mesh(_))) => {
+            return Err(Error::usage(format!("{} has one surface", format.noun))
+                .in_file(path)
+                .cure(format!("name the file alone: {}", file.display())));
+        }
         Some((format, FormatReader::Solid(_))) => {
             let name = format.name;
             return Err(Error::unsupported(format!(
@@ -263,6 +293,11 @@ fn parse(path: &Path, watch: Watch) -> Result<Triangles> {
         _ => return Err(unknown(path)),
     };
     read(path, watch).map_err(|e| e.in_file(path))
+}
+
+/// Splits `FILE:NAME`, which names a surface of a file with several.
+fn file_and_surface(path: &Path) -> (&Path, Option<&str>) {
+    path.to_str().map_or((path, None), layer::split)
 }
 
 #[cold]

@@ -68,20 +68,21 @@ fn open_stream(
     options: Options,
 ) -> Result<Box<dyn PointSource + Send>> {
     let head = head(&mut stream).map_err(|error| Error::from(error).in_file(name))?;
-    let known = formats::detect(&head, name).map(|format| format.reader);
+    let format = formats::detect(&head, name);
+    let noun = format.map_or("it", |format| format.noun);
     let whole = io::Cursor::new(head.clone()).chain(stream);
-    match known {
+    match format.map(|format| format.reader) {
         Some(FormatReader::Points { stream, .. }) => stream(Box::new(whole), name, options),
-        Some(FormatReader::Layer(_)) => Err(Error::unsupported(
-            "a shapefile cannot be read from a stream",
-        )
+        Some(FormatReader::Layer(_)) => Err(Error::unsupported(format!(
+            "{noun} cannot be read from a stream"
+        ))
         .in_file(name)
         .cure("give its path: it is a set of files")),
-        Some(FormatReader::Layers(_)) => Err(Error::unsupported(
-            "a GeoPackage cannot be read from a stream",
-        )
+        Some(FormatReader::Layers(_)) => Err(Error::unsupported(format!(
+            "{noun} cannot be read from a stream"
+        ))
         .in_file(name)
-        .cure("give its path: it is a database")),
+        .cure("give the path of a file")),
         _ => Err(refusal(&head, name)),
     }
 }

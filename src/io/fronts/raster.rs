@@ -5,10 +5,24 @@ use std::io::Read;
 use std::path::Path;
 
 use crate::error::{Error, Result};
+use crate::io::codec::ascii_grid::AsciiGrid;
 use crate::io::codec::geotiff::GeoTiffReader;
 use crate::io::formats::{self, Content, Format, FormatReader, HEAD};
 
-/// Opens a raster of heights. Only GeoTIFF is read without GDAL.
+/// Opens a raster of heights as text; `None` for a file of another format, by its first bytes.
+///
+/// # Errors
+/// Those of [`ascii_grid::open`](crate::io::ascii_grid::open).
+pub fn open_grid(path: impl AsRef<Path>) -> Option<Result<AsciiGrid>> {
+    let path = path.as_ref();
+    match formats::of_bytes(&first_bytes(path).ok()?)?.reader {
+        FormatReader::Grid(open) => Some(open(path)),
+        _ => None,
+    }
+}
+
+/// Opens a GeoTIFF of heights. Of other formats, only text is read without GDAL, see
+/// [`open_grid`].
 ///
 /// # Errors
 /// If the file cannot be opened, is damaged, or has another format; the message names the format if
@@ -62,10 +76,6 @@ mod tests {
     fn other_formats_are_refused_by_name() {
         let refused = |head: &[u8], path: &str| refusal(head, Path::new(path)).to_string();
         assert_eq!(refused(b"UHL1080000", "n43.dt0"), "DTED needs GDAL");
-        assert_eq!(
-            refused(b"NCOLS 4\nNROWS 5", "a.txt"),
-            "Esri ASCII grid needs GDAL"
-        );
         assert_eq!(
             refused(&[0; 100], "N50E012.HGT"),
             "SRTM height file (HGT) needs GDAL"

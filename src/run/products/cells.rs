@@ -6,6 +6,7 @@ use super::surface::{Model, SurfaceProduct};
 use crate::crs::Crs;
 use crate::data::{self, BlockSource, Colors, Frame, Grid, Rgba, Surface, Window};
 use crate::error::{Error, Result, Setting, wording};
+use crate::io::formats::{self, FormatReader, WriteHeights};
 use crate::io::geotiff::{self, CellFormat, Overviews, RasterSummary, WriteOptions};
 use crate::io::{Destination, png};
 use crate::run::context::notice::Notice;
@@ -507,6 +508,13 @@ impl<'a> CellProduct<'a> {
     }
 }
 
+/// Returns the writer of heights in a format other than GeoTIFF, by the extension of a target.
+fn text_writer(target: Destination) -> Option<WriteHeights> {
+    let format = formats::for_output(&target.format_path(), formats::Product::Heights)?;
+    let is_geotiff = matches!(format.reader, FormatReader::Raster(_));
+    format.writers.heights.filter(|_| !is_geotiff)
+}
+
 impl CellProduct<'_> {
     /// Returns about how many cells have a value; for a raster, the number of all cells.
     ///
@@ -536,8 +544,9 @@ impl CellProduct<'_> {
         Ok((self.frame(), data::cells(&self.watched(context)?)?))
     }
 
-    /// Computes all cells, on all cores, and writes them as GeoTIFF: heights as 32-bit floats,
-    /// shades as bytes, colors as four bytes.
+    /// Computes all cells, on all cores, and writes them: heights as 32-bit floats, shades as
+    /// bytes, colors as four bytes. The format is GeoTIFF, unless the extension of the target is
+    /// that of another format of heights.
     ///
     /// # Errors
     /// If the file cannot be written, or the run is canceled.
@@ -555,6 +564,9 @@ impl CellProduct<'_> {
         overviews: Overviews,
         context: &Context,
     ) -> Result<RasterSummary> {
+        if let (Content::Heights, Some(write)) = (&self.content, text_writer(target)) {
+            return write(target, &self.watched(context)?);
+        }
         let options = WriteOptions {
             overviews,
             ..self.content.format().into()

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use crate::crs::Crs;
 use crate::data::{
-    BlockSource, Bounds, Frame, LinkFlaw, PointBatch, PointFlags, PointInfo, Shape, ShapeKind,
-    Surface, SurfaceFacts,
+    BlockSource, Bounds, Frame, Grid, LinkFlaw, PointBatch, PointFlags, PointInfo, Shape,
+    ShapeKind, Surface, SurfaceFacts,
 };
 use crate::error::{Result, Wording};
 use crate::io::mesh::Solid;
@@ -278,16 +278,24 @@ fn raster_facts(path: &Path, context: &Context) -> Result<RasterFacts> {
                 warnings: info.warnings.clone(),
             })
         }
+        Raster::Text(grid) => {
+            let (cells, of_text) = grid.read_grid_with(&watch)?;
+            let (valid, range) = valid_of(&cells);
+            Ok(RasterFacts {
+                format: "ESRI ASCII grid".to_owned(),
+                sample: None,
+                frame: grid.frame(),
+                crs: grid.crs().cloned(),
+                nodata: Some(grid.nodata()),
+                scale: 1.0,
+                offset: 0.0,
+                valid,
+                range,
+                warnings: [grid.warnings(), &of_text].concat(),
+            })
+        }
         Raster::Gdal(raster) => {
-            let values = raster.read_grid_with(&watch)?.values;
-            let valid = values.into_iter().filter(|value| !value.is_nan());
-            let (count, range) = valid.fold(
-                (0, None),
-                |(count, range): (u64, Option<[f64; 2]>), value| {
-                    let [low, high] = range.unwrap_or([value; 2]);
-                    (count + 1, Some([low.min(value), high.max(value)]))
-                },
-            );
+            let (valid, range) = valid_of(&raster.read_grid_with(&watch)?);
             Ok(RasterFacts {
                 format: raster.description(),
                 sample: None,
@@ -296,12 +304,24 @@ fn raster_facts(path: &Path, context: &Context) -> Result<RasterFacts> {
                 nodata: None,
                 scale: 1.0,
                 offset: 0.0,
-                valid: count,
+                valid,
                 range,
                 warnings: raster.warnings().to_vec(),
             })
         }
     }
+}
+
+/// Returns the number of cells with a value, and the lowest and the highest.
+fn valid_of(grid: &Grid) -> (u64, Option<[f64; 2]>) {
+    let valid = grid.values.iter().filter(|value| !value.is_nan());
+    valid.fold(
+        (0, None),
+        |(count, range): (u64, Option<[f64; 2]>), &value| {
+            let [low, high] = range.unwrap_or([value; 2]);
+            (count + 1, Some([low.min(value), high.max(value)]))
+        },
+    )
 }
 
 fn mesh_facts(path: &Path, context: &Context) -> Result<MeshFacts> {

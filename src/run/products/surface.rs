@@ -289,8 +289,8 @@ impl SurfaceProduct {
     }
 }
 
-/// Writes a surface, in the format that the extension of `target` names: `.tin`, `.ply`, `.obj`,
-/// `.off` or `.stl`.
+/// Writes a surface, in the format that the extension of `target` names: see
+/// [`FORMATS`](crate::io::formats::FORMATS).
 ///
 /// # Errors
 /// If the extension names no such format, the surface is too large for it, the file cannot be

@@ -13,6 +13,7 @@ use crate::data::{
     BlockSource, Frame, Grid, Layer, LinkFlaw, Mesh, PointInfo, PointSource, Shape, Triangles,
 };
 use crate::error::{Error, Kind, Result};
+use crate::io::ascii_grid::AsciiGrid;
 pub(crate) use crate::io::formats::Content;
 use crate::io::formats::{self, Format, Holding};
 use crate::io::geotiff::GeoTiffReader;
@@ -222,11 +223,15 @@ fn gdal_may_help(error: &Error) -> bool {
 /// An open raster.
 pub(crate) enum Raster {
     GeoTiff(Box<GeoTiffReader>),
+    Text(Box<AsciiGrid>),
     Gdal(Box<gdal::Raster>),
 }
 
 impl Raster {
     pub(crate) fn open(path: &Path) -> Result<Self> {
+        if let Some(grid) = raster::open_grid(path) {
+            return grid.map(|grid| Raster::Text(Box::new(grid)));
+        }
         match raster::open(path) {
             Ok(reader) => Ok(Raster::GeoTiff(Box::new(reader))),
             Err(error) if gdal_may_help(&error) => {
@@ -240,6 +245,7 @@ impl Raster {
     pub(crate) fn cells(&self) -> u64 {
         let Frame { width, height, .. } = match self {
             Raster::GeoTiff(reader) => reader.frame(),
+            Raster::Text(grid) => grid.frame(),
             Raster::Gdal(raster) => raster.frame(),
         };
         width as u64 * height as u64
@@ -285,6 +291,10 @@ pub(crate) fn raster(path: &Path, journal: &Journal) -> Result<OpenRaster> {
             reader.read_grid_with(&watch)?,
             reader.info().warnings.clone(),
         ),
+        Raster::Text(grid) => {
+            let (cells, of_text) = grid.read_grid_with(&watch)?;
+            (cells, [grid.warnings(), &of_text].concat())
+        }
         Raster::Gdal(raster) => (raster.read_grid_with(&watch)?, raster.warnings().to_vec()),
     };
     journal.add_warnings(path, &warnings);
@@ -310,6 +320,11 @@ pub(crate) fn raster_frame(path: &Path) -> Result<RasterFrame> {
                 unread_crs: info.unread_crs.clone(),
             }
         }
+        Raster::Text(grid) => RasterFrame {
+            frame: grid.frame(),
+            crs: grid.crs().cloned(),
+            unread_crs: None,
+        },
         Raster::Gdal(raster) => RasterFrame {
             frame: raster.frame(),
             crs: raster.crs().cloned(),

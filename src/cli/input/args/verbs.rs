@@ -261,8 +261,9 @@ impl From<CellPointArg> for CellPoint {
 /// Every breakline becomes edges of the TIN; everywhere else the triangulation is Delaunay, and it
 /// does not depend on the order of the input. Formats: .tin (opened in milliseconds by `dem`,
 /// `contour`, `hillshade`, `check`, `info` and `tin`), .ply (binary, with breaklines and coordinate
-/// system; the same verbs read it), .obj, .off, and .stl (relative to a local origin, which is
-/// printed and written to a file next to it). A .tin must not change while a verb reads it.
+/// system; the same verbs read it), .obj, .off, .xml (LandXML), .dxf, .glb (glTF), .2dm, .nc
+/// (UGRID), .cityjson, and .stl (relative to a local origin, which is printed and written to a file
+/// next to it). A .tin must not change while a verb reads it.
 ///
 /// A surface that is larger than memory is written in parts, to .tins: an index, and a folder with
 /// a .tin for each tile. All verbs read the index as one surface.

@@ -5,6 +5,7 @@ use serde_json::json;
 use super::Sheet;
 use crate::data::EdgeKind;
 use crate::io::mesh::Solid;
+use crate::io::{formats, layer};
 use crate::run::MeshFacts;
 use crate::run::units::neat;
 
@@ -14,15 +15,11 @@ pub(super) fn sheet(path: &Path, facts: &MeshFacts) -> Sheet {
         .map(|flaw| format!("this is not a surface: {flaw}; `breakline check` lists all flaws"));
     let mut sheet = Sheet::with_warnings(no_surface.into_iter().map(Into::into).collect());
     sheet.silent("kind", "mesh");
-    let extension = path
-        .extension()
-        .unwrap_or_default()
-        .to_string_lossy()
-        .to_ascii_uppercase();
-    let format = match extension.as_str() {
-        "TIN" => extension,
-        "TINS" => "TIN in parts".to_owned(),
-        _ => format!("TIN, {extension}"),
+    let text = path.to_string_lossy();
+    let name = formats::of_name(layer::file_of(&text)).map_or("", |format| format.name);
+    let format = match name.starts_with("TIN") {
+        true => name.to_owned(),
+        false => format!("TIN, {name}"),
     };
     sheet.plain("format", format);
     sheet.plain("vertices", surface.vertices);

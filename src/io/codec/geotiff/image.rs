@@ -27,6 +27,28 @@ pub struct RasterSummary {
     pub valid: u64,
 }
 
+impl Default for RasterSummary {
+    /// No values.
+    fn default() -> Self {
+        RasterSummary {
+            min: f64::NAN,
+            max: f64::NAN,
+            valid: 0,
+        }
+    }
+}
+
+impl RasterSummary {
+    /// Adds cells; NaN has no value.
+    pub(crate) fn add(&mut self, cells: &[f32]) {
+        for &value in cells.iter().filter(|value| !value.is_nan()) {
+            self.valid += 1;
+            self.min = self.min.min(f64::from(value));
+            self.max = self.max.max(f64::from(value));
+        }
+    }
+}
+
 /// Bytes before a tile, and behind it.
 const LEADER: usize = 4;
 

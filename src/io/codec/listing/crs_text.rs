@@ -29,6 +29,11 @@ pub(crate) fn comments(crs: Option<&Crs>) -> Vec<String> {
     }
 }
 
+/// Returns what a user should know of a format without coordinate systems.
+pub(crate) fn left_out(crs: Option<&Crs>) -> Option<String> {
+    crs.map(|crs| format!("the format has no coordinate system, which is left out: {crs}"))
+}
+
 /// Returns `EPSG:25832`, if that is the complete definition. QGIS does not read two codes, as in
 /// `EPSG:25832+7837`.
 fn code(crs: &Crs) -> Option<String> {

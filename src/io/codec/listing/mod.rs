@@ -1,13 +1,26 @@
 //! The code that all mesh formats share: lists the vertices and faces of a surface.
 
 pub(crate) mod crs_text;
+pub(crate) mod ids;
+pub(crate) mod lines;
+pub(crate) mod loss;
 pub(crate) mod polygon;
 
 use std::ops::Range;
+use std::path::PathBuf;
 
 use crate::data::{self, Census, EdgeKind, Surface};
 
 const UNUSED: u32 = u32::MAX;
+
+/// What differs in a written file from the surface.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Remarks {
+    /// A local origin: what was subtracted from all coordinates, and the file that states it.
+    pub(crate) origin: Option<([f64; 3], PathBuf)>,
+    /// What the format cannot store.
+    pub(crate) notes: Vec<String>,
+}
 
 /// The vertices and faces of a surface as listed in a mesh file: in the surface's own order,
 /// without unused vertices.

@@ -46,17 +46,16 @@ mod walk;
 mod write;
 
 use std::collections::{BTreeMap, HashSet};
-use std::ffi::OsStr;
 use std::fs::File;
 use std::io::{BufReader, Read};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use crate::crs::Crs;
 use crate::data::{Attributes, Column as Attribute, Layer, Shape, Value};
 use crate::error::{Error, Result, Wording, wording};
 use crate::io::OnDamage;
 use crate::io::bytes::field;
 use crate::io::bytes::watch::{Watch, unwatched};
+use crate::io::codec::prj::{self, Prj, sibling};
 use crate::io::options::layer::Options;
 pub use append::append_fields;
 use header::{FILE_CODE, HEADER};
@@ -65,9 +64,6 @@ use record::type_name;
 use table::{Field, Numbers, Table};
 use walk::{Damage, Record, Shp, Walk};
 pub use write::{Column, check_size, write_contours, write_layer, write_lines};
-
-/// Limit for the bytes of a `.prj`; a larger file is something else.
-const MAX_PRJ: u64 = 1 << 20;
 
 /// Reads a shapefile; `path` names its `.shp`. The files next to it are found whatever the case of
 /// their extensions.
@@ -246,51 +242,13 @@ fn read_header(file: &mut impl Read, size: u64) -> Result<Header> {
     })
 }
 
-/// Returns the file next to `path` with this extension, in lower, upper or mixed case.
-fn sibling(path: &Path, extension: &str) -> Option<PathBuf> {
-    let lower = path.with_extension(extension);
-    if lower.exists() {
-        return Some(lower);
-    }
-    let wanted = lower.file_name()?.to_str()?.to_owned();
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    // Sorted, so that the choice does not depend on the file system.
-    let mut found: Vec<PathBuf> = std::fs::read_dir(folder)
-        .ok()?
-        .filter_map(|entry| Some(entry.ok()?.path()))
-        .filter(|path| {
-            path.file_name()
-                .and_then(OsStr::to_str)
-                .is_some_and(|name| name.eq_ignore_ascii_case(&wanted))
-        })
-        .collect();
-    found.sort();
-    found.into_iter().next()
-}
-
 /// Sets the coordinate system of a layer to that of the `.prj`.
 fn read_prj(path: &Path, layer: &mut Layer, warnings: &mut Vec<Wording>) -> Result<()> {
-    let Some(path) = sibling(path, "prj") else {
-        return Ok(());
-    };
-    let mut bytes = Vec::new();
-    File::open(&path)?
-        .take(MAX_PRJ)
-        .read_to_end(&mut bytes)
-        .map_err(|e| Error::from(e).in_file(&path))?;
-    let text = String::from_utf8_lossy(&bytes);
-    let text = text.trim_start_matches('\u{feff}').trim();
-    if text.is_empty() {
-        return Ok(());
-    }
-    match Crs::from_wkt(text) {
-        Ok(crs) => layer.crs = crs.unless_undefined(),
-        Err(e) => {
-            warnings.push(format!(".prj not used: {e}").into());
-            layer.unread_crs = Some(text.to_owned());
+    match prj::read_beside(path)? {
+        Prj::Stated(crs) => layer.crs = crs,
+        Prj::Unread(text, error) => {
+            warnings.push(format!(".prj not used: {error}").into());
+            layer.unread_crs = Some(text);
         }
     }
     Ok(())

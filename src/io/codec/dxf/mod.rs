@@ -1,15 +1,24 @@
-//! DXF drawings of release 12 (AC1009), as text: lines, polylines and texts on layers. Every CAD
-//! program reads them.
+//! DXF drawings of release 12 (AC1009), as text: triangles, lines, polylines and texts on layers.
+//! Every CAD program reads them.
+
+mod read;
 
 use std::collections::BTreeSet;
 use std::io::{Result, Write};
 
-use crate::data::{Bounds, Layer, Shape};
+pub(crate) use read::read;
+
+use crate::crs::Crs;
+use crate::data::{Bounds, EdgeKind, Layer, Shape};
 use crate::error;
 use crate::io::bytes::output::Destination;
+use crate::io::codec::listing::{Listing, Remarks, crs_text, lines};
 
 /// The bytes of the name of a layer, at most.
 const NAME: usize = 31;
+
+/// The bytes of a text, at most.
+const LONGEST: usize = 250;
 
 /// Writes the lines of a layer as polylines in space, and returns warnings. Vertices without a
 /// height are at 0.
@@ -38,6 +47,70 @@ pub(crate) fn write_lines(target: Destination, layer: &Layer) -> error::Result<V
         .then(|| left_out.to_owned())
         .into_iter()
         .collect())
+}
+
+/// Writes a surface: its triangles as 3DFACE on the layer `SURFACE`, its rim and those of its holes
+/// as closed polylines on `BOUNDARY`, and its lines as polylines on a layer for each kind. All are
+/// in space.
+///
+/// # Errors
+/// If the file cannot be written.
+pub(crate) fn write_surface(
+    target: Destination,
+    mesh: &Listing,
+    crs: Option<&Crs>,
+) -> error::Result<Remarks> {
+    let mut bounds = Bounds::default();
+    mesh.vertices().for_each(|p| bounds.add(p));
+    let all = lines::lines(mesh.surface);
+    let mut taken = BTreeSet::new();
+    let mut layers = vec![
+        DxfLayer::new("SURFACE", 8, &mut taken),
+        DxfLayer::new("BOUNDARY", 7, &mut taken),
+    ];
+    let kinds = all.iter().map(|of| of.kind);
+    layers.extend(kinds.map(|kind| DxfLayer::new(kind.noun(), color(kind), &mut taken)));
+    let at = |&v: &u32| mesh.surface.position(v);
+    target.write_with(|out| {
+        for line in crs_text::comments(crs) {
+            // Longer texts are no part of this release.
+            if line.len() < LONGEST {
+                writeln!(out, "999\n{line}")?;
+            }
+        }
+        let mut drawing = Dxf::begin(out, layers, &bounds)?;
+        for corners in mesh.triangles() {
+            drawing.face(0, corners)?;
+        }
+        for ring in lines::rings(mesh.surface) {
+            drawing.polyline(1, ring.iter().chain(ring.first()).map(at))?;
+        }
+        for (number, of) in all.iter().enumerate() {
+            for line in &of.lines {
+                drawing.polyline(2 + number, line.iter().map(at))?;
+            }
+        }
+        drawing.end()
+    })?;
+    let notes = crs.map(|crs| {
+        format!("a drawing has no coordinate system, which is a comment at most: {crs}")
+    });
+    Ok(Remarks {
+        notes: notes.into_iter().collect(),
+        ..Remarks::default()
+    })
+}
+
+/// Returns the color of lines of a kind.
+fn color(kind: EdgeKind) -> u8 {
+    match kind {
+        EdgeKind::Wall => 1,
+        EdgeKind::Shore => 5,
+        EdgeKind::Bank => 4,
+        EdgeKind::Soft => 2,
+        EdgeKind::Draped => 3,
+        _ => 6,
+    }
 }
 
 /// A layer of a drawing.
@@ -174,6 +247,15 @@ impl<'a> Dxf<'a> {
         self.entity("LINE", layer)?;
         self.point(0, from)?;
         self.point(1, to)
+    }
+
+    /// Draws a triangle in space.
+    pub(crate) fn face(&mut self, layer: usize, [a, b, c]: [[f64; 3]; 3]) -> Result<()> {
+        self.entity("3DFACE", layer)?;
+        // The last of four corners is the third again.
+        (0..)
+            .zip([a, b, c, c])
+            .try_for_each(|(which, corner)| self.point(which, corner))
     }
 
     /// Draws a polyline in space.
