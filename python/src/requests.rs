@@ -12,12 +12,13 @@ use breakline::io::geotiff::Overviews;
 use breakline::io::points;
 use breakline::run::{
     self, ColorReliefOptions, Degrees, EdgeLimit, FlatOptions, FlatRule, FrameOptions, Input,
-    LightOptions, LineRequest, LowerEdge, MemoryPoints, PerRecord, QuantityOptions, ReplacedPoints,
-    SystemOptions, TinRequest, WallOptions, WrittenEdges,
+    LightOptions, LineRequest, LowerEdge, MapOptions, MapPreset, MemoryPoints, PerRecord,
+    QuantityOptions, ReplacedPoints, Smoothing, SystemOptions, TinRequest, WallOptions,
+    WrittenEdges,
 };
 use breakline::terrain::{
-    CellPoint, Classes, CrossingRule, DuplicateRule, Gradient, HighSide, Method, Quantity,
-    Ruggedness, Shading, Thinning,
+    CellPoint, Classes, CrossingRule, DuplicateRule, Gradient, HighSide, LabelTops, Method,
+    Quantity, Ruggedness, Shading, Thinning,
 };
 use breakline::triangulation::OnCrossing;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
@@ -109,6 +110,59 @@ pub(crate) fn relief_options(
         matching: choose("match", &matching, &MATCHES)?,
         frame: frame.options()?,
         method: method(&method_name)?,
+    })
+}
+
+/// How contours become those of a map, under the names in Python.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct MapArguments {
+    preset: Option<String>,
+    /// Lines are smoothed.
+    smooth: bool,
+    /// How far; half of the interval if it is `None`.
+    tolerance: Option<f64>,
+    simplify: Option<f64>,
+    min_length: Option<f64>,
+    min_area: Option<f64>,
+    keep_depressions: bool,
+    index_every: Option<u32>,
+    bands: bool,
+    /// Where the tops of labels are; `None` without labels.
+    labels: Option<String>,
+    label_height: Option<f64>,
+}
+
+const PRESETS: [(&str, MapPreset); 1] = [("cartographic", MapPreset::Cartographic)];
+
+const LABELS: [(&str, LabelTops); 2] = [
+    ("readable", LabelTops::Readable),
+    ("uphill", LabelTops::Uphill),
+];
+
+/// Returns the options of contours for maps.
+pub(crate) fn map_options(given: MapArguments) -> PyResult<MapOptions> {
+    let preset = given.preset.as_deref();
+    let labels = given.labels.as_deref();
+    Ok(MapOptions {
+        preset: preset
+            .map(|name| choose("preset", name, &PRESETS))
+            .transpose()?,
+        smooth: given.smooth.then(|| {
+            given
+                .tolerance
+                .map_or(Smoothing::HalfInterval, Smoothing::Within)
+        }),
+        simplify: given.simplify,
+        min_length: given.min_length,
+        min_area: given.min_area,
+        keep_depressions: given.keep_depressions,
+        index_every: given.index_every,
+        bands: given.bands,
+        labels: labels
+            .map(|name| choose("labels", name, &LABELS))
+            .transpose()?,
+        label_height: given.label_height,
     })
 }
 

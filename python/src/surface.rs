@@ -469,16 +469,23 @@ impl Surface {
         interval: Option<f64>,
         base: f64,
         levels: Vec<f64>,
+        map: requests::MapArguments,
         call: Call,
     ) -> PyResult<Contours<'py>> {
         let options = ContourOptions {
             interval,
             base,
             levels,
+            map: requests::map_options(map)?,
         };
         let product = &self.product;
         let (points, starts, levels) = work::run(py, &call, |context| -> Result<_> {
-            let lines = run::contour(product, &options, context)?.collect(context)?;
+            let lines = if options.map.is_asked_for() {
+                let map = run::contour_map(product, &options, context)?;
+                map.contours.lines.into_iter().map(|of| of.line).collect()
+            } else {
+                run::contour(product, &options, context)?.collect(context)?
+            };
             let levels: Vec<f64> = lines.iter().map(|line| line.level).collect();
             let mut starts = vec![0];
             starts.extend(lines.iter().scan(0, |end, line| {

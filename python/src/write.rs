@@ -36,6 +36,7 @@ pub(crate) struct Asked<'py> {
     /// The options of the verb.
     product: Bound<'py, PyDict>,
     output: PathBuf,
+    labels_output: Option<PathBuf>,
     overwrite: bool,
     tiles: Option<String>,
     memory: Option<String>,
@@ -68,6 +69,7 @@ impl Asked<'_> {
     fn targets(&self) -> Targets {
         Targets {
             existing: Existing::of(self.overwrite),
+            labels: self.labels_output.clone(),
             ..Targets::of(&self.output)
         }
     }
@@ -166,6 +168,7 @@ fn verb(name: &str, options: &Bound<'_, PyDict>) -> PyResult<Arc<dyn Verb>> {
                 interval,
                 base,
                 levels,
+                map: requests::map_options(options.as_any().get_item("map")?.extract()?)?,
             })
         }
         "tin" => Arc::new(SurfaceOptions {
@@ -256,6 +259,14 @@ fn of_written(
         Summary::Contours(drawn) => {
             found.set_item("lines", drawn.lines)?;
             found.set_item("closed_lines", drawn.closed)
+        }
+        Summary::Map(map) => {
+            found.set_item("lines", map.drawn.lines)?;
+            found.set_item("closed_lines", map.drawn.closed)?;
+            found.set_item("lines_left_out", map.left_out)?;
+            found.set_item("deviation", map.deviation)?;
+            found.set_item("bands", map.bands)?;
+            found.set_item("labels", map.labels)
         }
         Summary::Parts(parts) => found.set_item("parts", parts.index.parts.len()),
         _ => Ok(()),

@@ -18,6 +18,7 @@
 //! | heights in colors | [`ColorReliefOptions`] | [`color_relief`] | [`CellProduct`] |
 //! | slope, aspect, curvature, roughness | [`QuantityOptions`] | [`quantity`] | [`CellProduct`] |
 //! | contours | [`ContourOptions`] | [`contour()`] | [`ContourProduct`] |
+//! | contours for maps | [`ContourOptions`] | [`contour_map()`] | [`ContourMap`] |
 //! | select, clip and merge points | [`PointsRequest`] | [`write_points`], [`read_points`] | [`PointsReport`] |
 //! | cut and fill above another surface or a level | [`VolumeOptions`] | [`volume()`] | [`VolumeProduct`] |
 //! | lines with the heights of a surface | [`DrapeOptions`] | [`drape`] | [`DrapeProduct`] |
@@ -117,6 +118,7 @@ pub use products::changed::{AreaOptions, ChangedAreas};
 pub use products::check::{CheckProduct, FlawKind, LocatedFlaw, check, surface_flaws};
 pub use products::compare::{CompareOptions, CompareProduct, compare};
 pub use products::contour::{ContourOptions, ContourProduct, contour, write_contours};
+pub use products::contour_map::{ContourMap, MapSummary, contour_map};
 pub use products::drape::{DrapeOptions, DrapeProduct, drape};
 pub use products::edge_limit::EdgeLimit;
 pub use products::elevation::{Heights, elevations};
@@ -124,6 +126,7 @@ pub use products::facts::{
     Facts, LayerFacts, MeshFacts, PlaneFacts, PointFacts, RasterFacts, facts,
 };
 pub use products::frame::FrameOptions;
+pub use products::map_options::{MapOptions, MapPreset, Smoothing};
 pub use products::overlaps::Overlap;
 pub use products::points::{
     PointsProduct, PointsReport, PointsRequest, Withheld, read_points, write_points,

@@ -61,6 +61,13 @@ impl Levels {
         Ok(Levels(Choice::Listed(levels)))
     }
 
+    /// Returns the interval, or the smallest difference of listed levels; 1 if there are fewer than
+    /// two.
+    pub fn interval(&self) -> f64 {
+        let step = self.smallest_step();
+        if step.is_finite() { step } else { 1.0 }
+    }
+
     /// Returns the smallest difference of two levels; infinity if there is one level at most.
     pub(super) fn smallest_step(&self) -> f64 {
         match &self.0 {
@@ -76,6 +83,37 @@ impl Levels {
             Choice::Listed(levels) => {
                 let at = levels.partition_point(|&other| other < level);
                 smallest_difference(&levels[at.saturating_sub(1)..levels.len().min(at + 2)])
+            }
+        }
+    }
+
+    /// Returns how many intervals a level is above the base, or its position in the list.
+    pub(super) fn number_of(&self, level: f64) -> i64 {
+        match &self.0 {
+            Choice::Every { interval, base } => ((level - base) / interval).round() as i64,
+            Choice::Listed(levels) => levels.partition_point(|&other| other < level) as i64,
+        }
+    }
+
+    /// Returns the last level at a height or below, and the first one above; `None` where a list
+    /// has no such level.
+    pub(super) fn around(&self, height: f64) -> [Option<f64>; 2] {
+        match &self.0 {
+            Choice::Every { interval, base } => {
+                let progression = Progression::new(*interval, *base);
+                let near = ((height - base) / interval).floor();
+                if near.abs() >= EXACT {
+                    return [None; 2];
+                }
+                let around: Vec<f64> = (near as i64 - 1..=near as i64 + 2)
+                    .map(|k| progression.level(k))
+                    .collect();
+                let above = around.partition_point(|&level| level <= height);
+                [above.checked_sub(1), Some(above)].map(|k| around.get(k?).copied())
+            }
+            Choice::Listed(levels) => {
+                let above = levels.partition_point(|&level| level <= height);
+                [above.checked_sub(1), Some(above)].map(|k| levels.get(k?).copied())
             }
         }
     }

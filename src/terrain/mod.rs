@@ -99,7 +99,10 @@ pub use builder::TinBuilder;
 pub use caps::{LeftOutAtRim, LostAtRim, LostCaps};
 pub use changes::{ChangedArea, changed_areas};
 pub use compact::{CompactTin, PartCell, TinIndex, TinIndexPart};
-pub use contour::{Contours, contours};
+pub use contour::{
+    Band, ContourLabel, Contours, LabelRules, LabelTops, MapContours, MapLine, MapRules,
+    contour_bands, contour_labels, contours, map_contours,
+};
 pub use crossings::{CrossingHeights, CrossingRule};
 pub use difference::{Difference, LargeDifference, largest_differences};
 pub use duplicates::DuplicateRule;

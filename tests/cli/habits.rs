@@ -59,12 +59,12 @@ fn what_cannot_be_done_names_what_can() {
         ),
         ("foo -tr 1 2 a.xyz", "unrecognized subcommand 'foo'"),
         (
-            "contour a.xyz --smooth 5 -o c.shp",
-            "hint: `breakline dem IN --method natural",
+            "contour a.xyz -smooth 5 -o c.shp",
+            "hint: --smooth TOLERANCE keeps lines this near to the surface",
         ),
         (
-            "contour a.xyz -p -o c.shp",
-            "hint: contours are lines; `breakline dem IN -o dem.tif`, then `gdal_contour -p`",
+            "contour a.xyz -p -amin LOW -o c.shp",
+            "hint: --bands has the fields ELEV_MIN and ELEV_MAX",
         ),
         (
             "tin a.xyz -p -o t.ply",

@@ -13,6 +13,7 @@ mod habits;
 mod inputs;
 mod jobs;
 mod lines;
+mod maps;
 mod memory;
 mod methods;
 #[cfg(unix)]

@@ -1,6 +1,8 @@
 //! The laws of contours, on surfaces where levels often meet vertices, edges and faces.
 
 mod judge;
+mod map;
+mod map_judge;
 mod raster;
 mod real;
 mod several_levels;

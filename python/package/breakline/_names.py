@@ -25,6 +25,10 @@ Verb = Literal[
 
 #: How shades follow from slopes.
 Shading = Literal["standard", "combined", "multidirectional", "igor"]
+#: Rules for contours of maps that belong together.
+Preset = Literal["cartographic"]
+#: Where the tops of labels are.
+Labels = Literal["readable", "uphill"]
 #: The colors of heights between those of a ramp.
 Match = Literal["linear", "nearest", "exact"]
 #: From which cells a gradient is computed.

@@ -12,6 +12,7 @@ from . import _breakline, _inputs, _masked
 from ._call import Progress, call
 from ._compare import Compared, same
 from ._errors import usage
+from ._maps import MAP, map_of, refuse_files
 from ._names import Overviews, Shading
 from ._pictures import SIDE, axes, missing, page
 
@@ -513,13 +514,16 @@ class Contours(Compared):
             )
 
 
-def draw(surface: Any, crs: Any, interval: Any, base: Any, levels: Any, threads: Any, progress: Any) -> Contours:
-    """Draw the contours of a surface of the library."""
+def draw(
+    surface: Any, crs: Any, interval: Any, base: Any, levels: Any, threads: Any, progress: Any, own: Any = MAP
+) -> Contours:
+    """Draw the contours of a surface of the library; ``own`` are the parameters of contours for maps."""
+    refuse_files(own)
     (levels,) = _masked.rows("levels", np.atleast_1d(_masked.as_array(levels)).ravel())
     levels = [_inputs.number(level, "levels") for level in levels]
     if interval is not None and levels:
         raise usage("interval and levels are given", None, "use one of them")
     interval, base = _inputs.optional_number(interval, "interval"), _inputs.number(base, "base")
     with call(threads, progress) as request:
-        coordinates, offsets, heights = surface.contours(interval, base, levels, request)
+        coordinates, offsets, heights = surface.contours(interval, base, levels, map_of(own), request)
     return Contours(coordinates, offsets, heights, crs)

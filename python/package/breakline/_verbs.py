@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from inspect import signature
-from typing import TYPE_CHECKING, Any, Optional, overload
+from typing import TYPE_CHECKING, Any, Optional, Union, overload
 
 import numpy as np
 
@@ -17,7 +17,8 @@ from ._call import Progress, call
 from ._errors import ArgumentTypeError, usage
 from ._compare import Compared
 from ._inputs import PathLike
-from ._names import Kernel, Method, OnCrossing, Overviews, Shading
+from ._maps import MAP
+from ._names import Kernel, Labels, Method, OnCrossing, Overviews, Preset, Shading
 from ._points import _read, _systems
 from ._results import Contours, Raster, draw, frame_of, light, of_cells
 from ._surface import FOR_ANY, Building
@@ -315,6 +316,17 @@ def contour(
     interval: Optional[float] = ...,
     base: float = ...,
     levels: Any = ...,
+    preset: Optional[Preset] = ...,
+    smooth: Union[float, bool, None] = ...,
+    simplify: Optional[float] = ...,
+    min_length: Optional[float] = ...,
+    min_area: Optional[float] = ...,
+    keep_depressions: bool = ...,
+    index_every: Optional[int] = ...,
+    bands: bool = ...,
+    labels_output: Optional[PathLike] = ...,
+    labels: Labels = ...,
+    label_height: Optional[float] = ...,
     output: None = None,
     threads: Optional[int] = ...,
     progress: Progress = ...,
@@ -327,6 +339,17 @@ def contour(
     interval: Optional[float] = ...,
     base: float = ...,
     levels: Any = ...,
+    preset: Optional[Preset] = ...,
+    smooth: Union[float, bool, None] = ...,
+    simplify: Optional[float] = ...,
+    min_length: Optional[float] = ...,
+    min_area: Optional[float] = ...,
+    keep_depressions: bool = ...,
+    index_every: Optional[int] = ...,
+    bands: bool = ...,
+    labels_output: Optional[PathLike] = ...,
+    labels: Labels = ...,
+    label_height: Optional[float] = ...,
     output: PathLike,
     **writing: Unpack[Writing],
 ) -> Written: ...
@@ -336,6 +359,17 @@ def contour(
     interval: Optional[float] = None,
     base: float = 0.0,
     levels: Any = (),
+    preset: Optional[Preset] = None,
+    smooth: Union[float, bool, None] = None,
+    simplify: Optional[float] = None,
+    min_length: Optional[float] = None,
+    min_area: Optional[float] = None,
+    keep_depressions: bool = False,
+    index_every: Optional[int] = None,
+    bands: bool = False,
+    labels_output: Optional[PathLike] = None,
+    labels: Labels = "readable",
+    label_height: Optional[float] = None,
     output: Any = None,
     overwrite: bool = False,
     memory: Any = None,
@@ -356,6 +390,27 @@ def contour(
         A :class:`Tin`, a :class:`Raster`, the path of a raster, or what :func:`tin` takes.
     interval, base, levels, threads, progress
         As for :meth:`Tin.contours`.
+    preset : str, optional
+        ``"cartographic"``: lines that can be printed. Other parameters replace parts of it.
+    smooth : float or bool, optional
+        Smooth the lines, as far as they stay this near to the surface, in height; True for half of the interval. No
+        line crosses another one or itself.
+    simplify : float, optional
+        Leave out vertices that are this near to the line.
+    min_length, min_area : float, optional
+        Leave out lines that are shorter or enclose less.
+    keep_depressions : bool
+        Keep depressions, whatever area they have.
+    index_every : int, optional
+        Mark every Nth level in a field ``INDEX`` of the file.
+    bands : bool
+        Write the areas between the lines, with ``ELEV_MIN`` and ``ELEV_MAX``.
+    labels_output : path, optional
+        A file for labels: points with ``ELEV`` and ``ROTATION``, degrees counter-clockwise from east.
+    labels : str
+        Where the tops of labels are: ``"readable"`` (up on the sheet) or ``"uphill"``.
+    label_height : float, optional
+        Their height on the ground, two intervals by default.
     output, overwrite, memory, tiles, job, resume, update, skip_bad
         Write a file, as for :func:`tin`, and return a :class:`Written`: files that need more memory are worked on in
         tiles, with the same result.
@@ -368,12 +423,14 @@ def contour(
     >>> breakline.contour([[0, 0, 1], [10, 0, 1], [10, 10, 3], [0, 10, 3]], interval=0.5).levels.tolist()
     [1.5, 2.0, 2.5]
     """
-    written = written_by(contour, dict(locals()))
+    given = dict(locals())
+    own = {name: given[name] for name in MAP}
+    written = written_by(contour, given)
     if written is not None:
         return written
     found = surface_of(points, surface, threads, progress)
     crs = found.crs[0] if found.crs else None
-    return draw(found, crs, interval, base, levels, threads, progress)
+    return draw(found, crs, interval, base, levels, threads, progress, own)
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ from . import _breakline, _inputs, _masked
 from ._call import Progress, call
 from ._errors import ArgumentTypeError, usage
 from ._points import _read, _systems
+from ._maps import MAP, map_of
 from ._pictures import missing
 from ._results import frame_of, light
 from ._surface import DEFAULTS, FOR_ANY, Building, refuse_building, surface_arguments
@@ -346,7 +347,7 @@ _OF_VERBS: "dict[str, dict[str, Any]]" = {
         }
         for verb, own in _QUANTITIES.items()
     },
-    "contour": {"interval": None, "base": 0.0, "levels": ()},
+    "contour": {"interval": None, "base": 0.0, "levels": (), **MAP},
     "tin": {},
 }  # fmt: skip
 
@@ -400,6 +401,7 @@ def _request(verb: str, inputs: "list[Any]", options: "dict[str, Any]", how: "di
         raise usage("resume and update are given", None, "use one of them")
     systems = _systems(options.pop("crs", None), options.pop("to_crs", None), options.pop("force_degrees", False))
     read = _read(options.pop("columns", None), options.pop("partial", False))
+    labels = own.get("labels_output")
     kind = "points"
     if len(inputs) == 1 and isinstance(inputs[0], str):
         kind = _breakline.kind_of(inputs[0])
@@ -414,6 +416,7 @@ def _request(verb: str, inputs: "list[Any]", options: "dict[str, Any]", how: "di
         "verb": verb,
         "product": _product(verb, own),
         "output": _inputs.path(how["output"], "output"),
+        "labels_output": _inputs.path(labels, "labels_output") if labels is not None else None,
         "overwrite": bool(how["overwrite"]),
         "tiles": None if how["tiles"] is None else _inputs.name(how["tiles"], "tiles"),
         "memory": None if how["memory"] is None else str(how["memory"]),
@@ -441,12 +444,13 @@ def _product(verb: str, own: "dict[str, Any]") -> "dict[str, Any]":
     if verb == "tin":
         return {"plain": False}
     if verb == "contour":
-        (levels,) = _masked.rows("levels", np.atleast_1d(_masked.as_array(own["levels"])).ravel())
-        heights = [_inputs.number(level, "levels") for level in levels]
+        (given,) = _masked.rows("levels", np.atleast_1d(_masked.as_array(own["levels"])).ravel())
+        heights = [_inputs.number(level, "levels") for level in given]
         interval = _inputs.optional_number(own["interval"], "interval")
         if interval is not None and heights:
             raise usage("interval and levels are given", None, "use one of them")
-        return {"levels": (interval, _inputs.number(own["base"], "base"), heights)}
+        levels = (interval, _inputs.number(own["base"], "base"), heights)
+        return {"levels": levels, "map": map_of(own)}
     frame = frame_of(own["resolution"], own["extent"], own["align_to"], own.get("overviews", "auto"))
     product: "dict[str, Any]" = {"frame": frame, "method": _inputs.name(own["method"], "method")}
     if verb == "hillshade":

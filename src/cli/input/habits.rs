@@ -126,10 +126,11 @@ const HABITS: &[Habit] = &[
     Habit { typed: &["-creeks"], verbs: SURFACES, meaning: Same("--breaklines") },
     Habit { typed: &["-iso_every"], verbs: CONTOUR, meaning: Same("--interval") },
     Habit { typed: &["-iso_value"], verbs: CONTOUR, meaning: List("--levels") },
-    Habit { typed: &["-smooth", "--smooth"], verbs: &[],
-        meaning: Refused("`breakline dem IN --method natural -o dem.tif` has no facets; `breakline contour dem.tif` draws its contours") },
-    Habit { typed: &["-p"], verbs: CONTOUR,
-        meaning: Refused("contours are lines; `breakline dem IN -o dem.tif`, then `gdal_contour -p` makes polygons") },
+    Habit { typed: &["-smooth"], verbs: CONTOUR, meaning: Refused("--smooth TOLERANCE keeps lines this near to the surface; without a number, within half of the interval") },
+    Habit { typed: &["-clean"], verbs: CONTOUR, meaning: Same("--min-length") },
+    Habit { typed: &["-simplify"], verbs: CONTOUR, meaning: Same("--simplify") },
+    Habit { typed: &["-p"], verbs: CONTOUR, meaning: Same("--bands") },
+    Habit { typed: &["-amin", "-amax"], verbs: CONTOUR, meaning: Refused("--bands has the fields ELEV_MIN and ELEV_MAX") },
     Habit { typed: &["-p"], verbs: &["slope"], meaning: Same("--percent") },
     Habit { typed: &["-alg"], verbs: BY_FORMULA, meaning: Same("--formula") },
     Habit { typed: &["-compute_edges"], verbs: RASTERS, meaning: Nothing },
@@ -502,7 +503,18 @@ fn with_output(verb: &str, mut words: Vec<OsString>) -> Result<(Vec<OsString>, V
             targets.push(target.into());
         }
         let is_followed = match text.strip_prefix("--") {
-            Some(long) => takes_value(&|option| option.get_long() == Some(long)),
+            Some(long) => {
+                let next = words.get(i + 1).map(|word| word.to_string_lossy());
+                let is_option =
+                    next.is_none_or(|next| next.starts_with('-') && finite(&next).is_err());
+                let may_lack_value = |option: &clap::Arg| {
+                    let values = option.get_num_args();
+                    values.is_some_and(|values| values.min_values() == 0)
+                };
+                takes_value(&|option| {
+                    option.get_long() == Some(long) && !(is_option && may_lack_value(option))
+                })
+            }
             None => of_value.is_some_and(|(_, value)| value.is_empty()),
         };
         if !text.starts_with('-') || text == "-" {

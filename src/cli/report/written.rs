@@ -15,8 +15,8 @@ use crate::io::mesh::MeshSummary;
 use crate::run::listed;
 use crate::run::units::{Units, bytes};
 use crate::run::{
-    Context, Event, JobReport, JobSize, Monitor, Notice, Origin, Outputs, Progress, Size, Stage,
-    Summary, WriteReport, Written, WrittenOf,
+    Context, Event, JobReport, JobSize, MapSummary, Monitor, Notice, Origin, Outputs, Progress,
+    Size, Stage, Summary, WriteReport, Written, WrittenOf,
 };
 use crate::terrain::Quantity;
 
@@ -114,6 +114,7 @@ impl<'a> Shown<'a> {
             Summary::Heights(cells) => print_heights(cells, crs, console),
             Summary::Quantity(quantity, cells) => print_quantity(*quantity, cells, crs, console),
             Summary::Contours(drawn) => print_contours(drawn, crs, console),
+            Summary::Map(map) => print_map(map, crs, console),
             Summary::Parts(parts) => {
                 let folder = files
                     .first()
@@ -190,6 +191,35 @@ impl Monitor for Shown<'_> {
             | Event::WaitsForJob { .. }
             | Event::GoesOnWithout { .. } => {}
         }
+    }
+}
+
+/// Prints what was written of contours for a map, and what is promised of them.
+fn print_map(map: &MapSummary, crs: Option<&Crs>, console: &Console) {
+    print_contours(&map.drawn, crs, console);
+    if map.left_out > 0 {
+        let left_out = counted(map.left_out as u64, "line");
+        console.line(format_args!(
+            "left out    {left_out}, too small or too short"
+        ));
+    }
+    if let Some(deviation) = map.deviation {
+        let deviation = Units::of(crs).height(deviation);
+        console.line(format_args!(
+            "promise     {deviation} off the surface at most, no crossings"
+        ));
+    }
+    if let Some(bands) = map.bands {
+        console.line(format_args!(
+            "bands       {}",
+            counted(bands as u64, "area")
+        ));
+    }
+    if let Some(labels) = map.labels {
+        console.line(format_args!(
+            "labels      {}",
+            counted(labels as u64, "label")
+        ));
     }
 }
 

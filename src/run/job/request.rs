@@ -113,6 +113,7 @@ pub(super) fn add_targets(options: &mut Options, targets: &Targets, tiles: &Tile
         existing,
         crossings,
         replaced,
+        labels,
         also_read: _,
     } = targets;
     let mut listed = Listed(std::mem::take(options));
@@ -120,6 +121,10 @@ pub(super) fn add_targets(options: &mut Options, targets: &Targets, tiles: &Tile
     listed.add(&[Setting::Overwrite], existing);
     listed.add(&[Setting::CrossingReport], crossings);
     listed.put(REPLACED, replaced);
+    // Jobs have none yet: those of today have the same list as those before.
+    if labels.is_some() {
+        listed.add(&[Setting::LabelsOutput], labels);
+    }
     listed.add(&[Setting::SkipBad], &tiles.bad);
     *options = listed.0;
 }

@@ -3,6 +3,7 @@
 use std::io::Cursor;
 
 use super::contour_rows::{self, Scratch};
+use super::map_options::MapOptions;
 use super::surface::{Model, SurfaceProduct};
 use crate::crs::Crs;
 use crate::data::{ContourLine, Surface};
@@ -29,6 +30,9 @@ pub struct ContourOptions {
     pub base: f64,
     /// These heights instead of an interval, unless empty.
     pub levels: Vec<f64>,
+    /// How lines become those of a map.
+    #[serde(default)]
+    pub map: MapOptions,
 }
 
 impl ContourOptions {

@@ -2,15 +2,16 @@
 
 use std::fmt::Debug;
 
-use super::targets::Outputs;
-use super::{Keeps, Summary, Tiles, Verb};
-use crate::error::{Result, Setting};
+use super::targets::{Outputs, Target};
+use super::{Keeps, Summary, TileUse, Tiles, Verb};
+use crate::error::{Command, Error, Result, Setting, wording};
 use crate::io::Destination;
 use crate::io::contours::ContourSummary;
 use crate::io::formats::Product;
 use crate::run::context::Context;
 use crate::run::context::notice::Notice;
 use crate::run::products::contour::{self, ContourOptions};
+use crate::run::products::contour_map::contour_map;
 use crate::run::products::surface::{self, SurfaceProduct, SurfaceRequest};
 
 impl Verb for ContourOptions {
@@ -23,7 +24,8 @@ impl Verb for ContourOptions {
     }
 
     fn check(&self) -> Result<()> {
-        self.to_levels().map(drop)
+        let levels = self.to_levels()?;
+        self.map.to_rules(&levels).check(&levels)
     }
 
     fn list(&self, add: &mut dyn FnMut(Setting, &dyn Debug)) {
@@ -31,10 +33,32 @@ impl Verb for ContourOptions {
             interval,
             base,
             levels,
+            map,
         } = self;
         add(Setting::Interval, interval);
         add(Setting::Base, base);
         add(Setting::Levels, levels);
+        // Jobs draw exact lines: those of today have the same list as those before.
+        if map.is_asked_for() {
+            add(Setting::Preset, map);
+        }
+    }
+
+    fn use_of_tiles(&self, targets: &[Target]) -> Result<TileUse> {
+        if !self.map.is_asked_for() {
+            return Ok(TileUse::Optional);
+        }
+        let error = Error::usage("contours for maps are drawn in one piece").cure(wording![
+            "without ",
+            Setting::Tiles,
+            ", the whole surface is in memory; for more points, draw exact contours, or those of a surface in parts that ",
+            Command::Tin,
+            " writes (.tins) or of a simplified one"
+        ]);
+        Ok(TileUse::Never(match targets {
+            [target, ..] => error.in_file(&target.path),
+            [] => error,
+        }))
     }
 
     fn surface(&self, request: &SurfaceRequest, context: &Context) -> Result<SurfaceProduct> {
@@ -47,6 +71,9 @@ impl Verb for ContourOptions {
         outputs: &Outputs,
         context: &Context,
     ) -> Result<Summary> {
+        if self.map.is_asked_for() {
+            return write_map(surface, self, outputs, context);
+        }
         let contours = contour::contour(surface, self, context)?;
         write_all(outputs, context, |target| contours.write(target, context))
     }
@@ -65,6 +92,22 @@ impl Verb for ContourOptions {
             tiles.write_contours(self, target, context)
         })
     }
+}
+
+fn write_map(
+    surface: &SurfaceProduct,
+    options: &ContourOptions,
+    outputs: &Outputs,
+    context: &Context,
+) -> Result<Summary> {
+    let map = contour_map(surface, options, context)?;
+    for target in &outputs.targets {
+        map.write(options, target.within(&outputs.set), context)?;
+    }
+    if let Some(target) = &outputs.labels {
+        map.write_labels(target.within(&outputs.set), context)?;
+    }
+    Ok(Summary::Map(map.summary(options)))
 }
 
 fn write_all(

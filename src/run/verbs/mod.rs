@@ -30,6 +30,7 @@ use crate::io::geotiff::RasterSummary;
 use crate::io::mesh::MeshSummary;
 use crate::run::context::Context;
 use crate::run::products::contour::ContourOptions;
+use crate::run::products::contour_map::MapSummary;
 use crate::run::products::frame::FrameOptions;
 use crate::run::products::surface::{self, SurfaceProduct, SurfaceRequest};
 use crate::run::sources::tin_parts::WrittenParts;
@@ -211,6 +212,8 @@ pub enum Summary {
     Shades,
     /// Contours.
     Contours(ContourSummary),
+    /// Contours for a map.
+    Map(MapSummary),
     /// Meshes, in the order of the outputs.
     Meshes(Vec<(PathBuf, MeshSummary)>),
     /// A TIN in parts.

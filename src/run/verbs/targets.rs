@@ -25,6 +25,9 @@ pub struct Targets {
     /// A table of the points that water and walls replaced, which the request has to
     /// [keep](crate::run::ReplacedPoints).
     pub replaced: Option<PathBuf>,
+    /// The labels of contours.
+    #[serde(default)]
+    pub labels: Option<PathBuf>,
     /// Files that are read besides those of the request, such as lists of inputs: no output may
     /// replace them.
     pub also_read: Vec<PathBuf>,
@@ -89,12 +92,14 @@ impl Targets {
             existing: _,
             crossings,
             replaced,
+            labels,
             also_read,
         } = self;
         files
             .iter_mut()
             .chain(crossings)
             .chain(replaced)
+            .chain(labels)
             .chain(also_read)
             .for_each(visit);
     }
@@ -114,7 +119,12 @@ impl Targets {
     ) -> Result<Outputs> {
         let may_replace = |file: &Path| self.existing == Existing::Replace || is_own(file);
         let formats = formats_of(product, |_| ());
-        let outputs = resolve(&self.files, &may_replace, &formats, read)?;
+        let mut outputs = resolve(&self.files, &may_replace, &formats, read)?;
+        if let Some(labels) = &self.labels {
+            let formats = formats_of(Product::Lines, |_| ());
+            let found = resolve(std::slice::from_ref(labels), &may_replace, &formats, read)?;
+            outputs.labels = found.targets.into_iter().next();
+        }
         self.check_tables(read)?;
         let is_target = |table: &&Path| {
             outputs
@@ -122,7 +132,8 @@ impl Targets {
                 .iter()
                 .any(|target| is_same(&target.path, table))
         };
-        match self.tables().find(is_target) {
+        let labels = self.labels.as_deref();
+        match self.tables().chain(labels).find(is_target) {
             Some(table) => Err(Error::usage("the output is named twice").in_file(table)),
             None => Ok(outputs),
         }
@@ -249,6 +260,8 @@ impl<F> Target<F> {
 pub struct Outputs<F = ()> {
     /// The files, with their formats.
     pub targets: Vec<Target<F>>,
+    /// The file for the labels of contours.
+    pub labels: Option<Target<F>>,
     /// What a writer adds them to.
     pub set: OutputSet,
 }
@@ -296,6 +309,7 @@ pub(crate) fn resolve<F: Copy>(
     }
     Ok(Outputs {
         targets,
+        labels: None,
         set: OutputSet::default(),
     })
 }

@@ -63,7 +63,7 @@ fn finish(level: f64, Joined { mut points, closed }: Joined, lines: &mut Vec<Con
 
 /// Rotates a ring to its smallest point; if that occurs more than once, to the occurrence from
 /// which the whole ring is smallest.
-fn start_at_smallest(ring: &mut [[f64; 2]]) {
+pub(super) fn start_at_smallest(ring: &mut [[f64; 2]]) {
     let (mut best, mut is_repeated) = (0, false);
     for (i, point) in ring.iter().enumerate().skip(1) {
         let smallest = ring[best];

@@ -109,8 +109,10 @@ mod index;
 mod join;
 mod line;
 mod loops;
+mod map;
 mod narrow;
 pub mod parts;
+mod polygons;
 mod trace;
 
 use super::Levels;
@@ -119,7 +121,12 @@ use crate::error::Result;
 use bands::Bands;
 pub(super) use cut::crossing;
 use join::Joined;
+pub use map::{
+    Band, ContourLabel, LabelRules, LabelTops, MapContours, MapLine, MapRules, contour_bands,
+    contour_labels, map_contours,
+};
 use narrow::{Bends, NarrowArcs};
+pub(super) use polygons::Polygons;
 use trace::Traces;
 
 /// Returns the contours of a surface, sorted by level and then by their points.

@@ -2,6 +2,7 @@
 
 mod follow;
 mod hints;
+mod linked;
 mod rim;
 mod segment;
 mod step;
@@ -11,9 +12,11 @@ mod turns;
 
 use self::follow::Follow;
 use self::hints::Hints;
+pub(in crate::terrain) use self::linked::{Arrival, follow_linked};
 use self::rim::{RimEdge, on_rim};
 use self::segment::Segment;
-use self::step::{At, Steps};
+pub(in crate::terrain) use self::step::At;
+use self::step::Steps;
 pub(crate) use self::stepped::stepped;
 use self::turns::{Ground, in_turns};
 use super::boxes::Boxes;
@@ -146,6 +149,14 @@ impl<'a> Locator<'a> {
             locate: &|q, steps| self.locate(q, steps),
         };
         in_turns(&ground, &lines)
+    }
+
+    /// Returns where on the surface a position is.
+    ///
+    /// # Complexity
+    /// That of [`height`](Self::height).
+    pub(in crate::terrain) fn at(&self, q: [f64; 2]) -> At {
+        self.locate(q, &mut Steps::new(self.surface))
     }
 
     /// Returns where a position is, by a walk from a face near to it.

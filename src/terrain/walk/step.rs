@@ -12,7 +12,7 @@ use crate::triangulation::num::Sign;
 
 /// Where on a surface a position is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum At {
+pub(in crate::terrain) enum At {
     /// Not on it, as far as it was approached.
     Off,
     /// Within a face.

@@ -3,6 +3,7 @@
 
 mod accuracy;
 mod compare;
+mod contour;
 mod drape;
 mod job;
 mod lines;
@@ -29,6 +30,7 @@ use crate::io::formats;
 
 pub(crate) use accuracy::AccuracyArgs;
 pub(crate) use compare::CompareArgs;
+pub(crate) use contour::ContourArgs;
 pub(crate) use drape::DrapeArgs;
 pub(crate) use job::{JobAction, JobArgs};
 pub(crate) use lines::LineArgs;
@@ -45,8 +47,8 @@ pub(crate) use switches::expand_switches;
 pub(crate) use systems::SystemArgs;
 pub(crate) use tiles::{MemoryArgs, TileArgs};
 pub(crate) use verbs::{
-    CheckArgs, ContourArgs, DemArgs, DemoArgs, DescribeArgs, FrameArgs, HillshadeArgs, InfoArgs,
-    LimitArgs, OutputArgs, PointsArgs, SimplifyArgs, TinArgs, TriangulateArgs,
+    CheckArgs, DemArgs, DemoArgs, DescribeArgs, FrameArgs, HillshadeArgs, InfoArgs, LimitArgs,
+    OutputArgs, PointsArgs, SimplifyArgs, TinArgs, TriangulateArgs,
 };
 pub(crate) use volume::VolumeArgs;
 

@@ -581,49 +581,6 @@ impl From<MethodArg> for Method {
     }
 }
 
-/// Draw contours of a TIN or of a DEM
-///
-/// Contours are drawn exactly on the triangles (of a DEM: between the centers of its cells), joined
-/// to the longest possible lines, with higher ground on the right. The output is .shp (PolyLineZ
-/// with field ELEV), .gpkg or .geojson. Points may need more memory than there is: then the work is
-/// done in tiles (--tiles, --memory).
-#[derive(Debug, Clone, Args)]
-#[command(after_long_help = "\
-Example:
-  breakline contour tile.laz --breaklines edges.shp --interval 0.5 -o contours.shp
-  breakline contour dem.tif --levels 100,105.5,120 -o contours.geojson")]
-pub(crate) struct ContourArgs {
-    #[command(flatten)]
-    pub(crate) surface: SurfaceArgs,
-    #[command(flatten)]
-    pub(crate) output: OutputArgs,
-
-    /// Height between contours [default: 1]
-    ///
-    /// In the units of the heights.
-    #[arg(long, value_name = "HEIGHT", value_parser = positive, allow_negative_numbers = true, help_heading = "Levels")]
-    pub(crate) interval: Option<f64>,
-
-    /// A height at which there is a contour; the others follow from the interval
-    #[arg(long, value_name = "HEIGHT", value_parser = finite, default_value = "0", allow_hyphen_values = true, help_heading = "Levels")]
-    pub(crate) base: f64,
-
-    /// These heights instead of an interval, such as `100,105.5`
-    #[arg(
-        long,
-        value_name = "HEIGHT,..",
-        value_parser = finite,
-        value_delimiter = ',',
-        allow_hyphen_values = true,
-        conflicts_with_all = ["interval", "base"],
-        help_heading = "Levels"
-    )]
-    pub(crate) levels: Vec<f64>,
-
-    #[command(flatten)]
-    pub(crate) tiles: TileArgs,
-}
-
 /// Shade a TIN or a DEM as the sun would
 ///
 /// Brightness is 1 to 255, and 0 where there is no surface. The output is a GeoTIFF (.tif) or a

@@ -567,3 +567,21 @@ fn polygons_are_written_with_their_holes() {
     assert_eq!(sizes, [3, 1]);
     assert!(geometry(2).is_null());
 }
+
+#[test]
+fn points_come_back() {
+    let shapes = vec![
+        Shape::Points(vec![[1.0, 2.0, 3.0]]),
+        Shape::Points(vec![[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]),
+        Shape::Null,
+    ];
+    let layer = Layer {
+        shapes: shapes.clone(),
+        ..Layer::default()
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let target = folder.path().join("x.geojson");
+    super::write_lines(&target, &layer).unwrap();
+    let text = std::fs::read_to_string(&target).unwrap();
+    assert_eq!(read(&text).unwrap().shapes, shapes);
+}

@@ -29,8 +29,8 @@ pub fn write_contours<'a>(
     Destination::write_with(target.into(), |out| write(out, lines, crs))
 }
 
-/// Writes the lines and polygons of a layer as a FeatureCollection, with all its attributes as
-/// properties, and returns warnings. Heights that are missing are left out. Other records become
+/// Writes the points, lines and polygons of a layer as a FeatureCollection, with all its attributes
+/// as properties, and returns warnings. Heights that are missing are left out. Other records become
 /// features without geometry.
 ///
 /// # Errors
@@ -185,6 +185,19 @@ fn write_record(out: &mut impl Write, layer: &Layer, record: usize) -> std::io::
     }
     out.write_all(b"},\"geometry\":")?;
     match layer.shapes.get(record) {
+        Some(Shape::Points(points)) => match &points[..] {
+            [] => out.write_all(b"null")?,
+            [point] => {
+                out.write_all(b"{\"type\":\"Point\",\"coordinates\":")?;
+                write_position(out, *point)?;
+                out.write_all(b"}")?;
+            }
+            points => {
+                out.write_all(b"{\"type\":\"MultiPoint\",\"coordinates\":")?;
+                write_positions(out, points)?;
+                out.write_all(b"}")?;
+            }
+        },
         Some(Shape::Lines(parts)) => match &parts[..] {
             [] => out.write_all(b"null")?,
             [part] => {
@@ -230,14 +243,18 @@ fn write_polygons(out: &mut impl Write, rings: &[Vec<[f64; 3]>]) -> std::io::Res
 
 fn write_positions(out: &mut impl Write, part: &[[f64; 3]]) -> std::io::Result<()> {
     out.write_all(b"[")?;
-    for (i, [x, y, z]) in part.iter().enumerate() {
-        let comma = if i == 0 { "" } else { "," };
-        match z.is_finite() {
-            true => write!(out, "{comma}[{x},{y},{}]", unsigned_zero(*z))?,
-            false => write!(out, "{comma}[{x},{y}]")?,
-        }
+    for (i, position) in part.iter().enumerate() {
+        out.write_all(if i == 0 { b"" } else { b"," })?;
+        write_position(out, *position)?;
     }
     out.write_all(b"]")
+}
+
+fn write_position(out: &mut impl Write, [x, y, z]: [f64; 3]) -> std::io::Result<()> {
+    match z.is_finite() {
+        true => write!(out, "[{x},{y},{}]", unsigned_zero(z)),
+        false => write!(out, "[{x},{y}]"),
+    }
 }
 
 /// Writes a contour as a feature, without a line break.

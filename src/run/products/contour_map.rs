@@ -1,0 +1,252 @@
+//! Contours of a surface for a map: lines, the areas between them, and labels.
+
+use super::contour::ContourOptions;
+use super::surface::SurfaceProduct;
+use crate::crs::Crs;
+use crate::data::{Attributes, Layer, Shape, Value};
+use crate::error::{Error, Result};
+use crate::io::Destination;
+use crate::io::contours::ContourSummary;
+use crate::run::context::notice::Notice;
+use crate::run::context::units::Units;
+use crate::run::context::watched::Watched;
+use crate::run::context::{Context, Journal, Size, Stage};
+use crate::run::lines::layers;
+use crate::run::sources::systems::reproject_first;
+use crate::terrain::{self, ContourLabel, LabelRules, MapContours, MapLine, MapRules};
+
+/// Contours for a map, with what belongs to them.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct ContourMap {
+    /// The lines, and the areas between them if they were asked for.
+    pub contours: MapContours,
+    /// The labels, if they were asked for.
+    pub labels: Vec<ContourLabel>,
+    /// The coordinate system.
+    pub crs: Option<Crs>,
+    /// What was assumed, in the order in which it was found.
+    pub notices: Vec<Notice>,
+    index_step: Option<u32>,
+}
+
+/// What was written of a map, counted.
+#[derive(Debug, Clone, Default, PartialEq)]
+#[non_exhaustive]
+pub struct MapSummary {
+    /// The lines that were drawn.
+    pub drawn: ContourSummary,
+    /// The number of lines that were left out.
+    pub left_out: usize,
+    /// The largest difference between the height of a line and the surface along it; `None` if
+    /// lines are exact.
+    pub deviation: Option<f64>,
+    /// The number of areas, if they were asked for.
+    pub bands: Option<usize>,
+    /// The number of labels, if they were asked for.
+    pub labels: Option<usize>,
+}
+
+/// Draws contours for a map.
+///
+/// # Errors
+/// If a level or a rule is not valid, the coordinates are in degrees or in another unit than the
+/// heights while a rule has lengths, the surface is damaged or too large for one piece, or the run
+/// is canceled.
+///
+/// # Complexity
+/// That of [`terrain::map_contours`]; the surface is in memory as a whole.
+pub fn contour_map(
+    surface: &SurfaceProduct,
+    options: &ContourOptions,
+    context: &Context,
+) -> Result<ContourMap> {
+    let journal = Journal::new(context);
+    context.check()?;
+    let levels = options.to_levels()?;
+    let map = &options.map;
+    let rules = map.to_rules(&levels);
+    rules.check(&levels)?;
+    let exact = MapRules {
+        with_bands: rules.with_bands,
+        keep_depressions: rules.keep_depressions,
+        ..MapRules::default()
+    };
+    if rules != exact || map.labels.is_some() {
+        require_lengths(surface.crs())?;
+    }
+    options
+        .notice(surface.crs())
+        .into_iter()
+        .for_each(|notice| journal.add(notice));
+    let contours = surface.with_faces(context, |faces| {
+        let finding = context.start(Stage::FindingContours, Size::Uncounted)?;
+        let polled = Watched::polled(faces, context)?;
+        let found = terrain::map_contours(&polled, &levels, &rules)?;
+        polled.end()?;
+        finding.end()?;
+        Ok(found)
+    })?;
+    let index_step = map.index_step();
+    let labels = map.labels.map(|tops| {
+        let from = LabelRules::of_interval(levels.interval());
+        let rules = LabelRules {
+            height: map.label_height.unwrap_or(from.height),
+            tops,
+            ..from
+        };
+        let is_labeled = |line: &MapLine| index_step.is_none_or(|step| is_index(line, step));
+        terrain::contour_labels(&contours.lines, is_labeled, &rules)
+    });
+    Ok(ContourMap {
+        contours,
+        labels: labels.unwrap_or_default(),
+        crs: surface.crs().cloned(),
+        notices: journal.take(),
+        index_step,
+    })
+}
+
+/// Returns an error if lengths in plan and heights are not in one unit.
+fn require_lengths(crs: Option<&Crs>) -> Result<()> {
+    let units = Units::of(crs);
+    if units.is_angular() {
+        return Err(Error::unsupported(
+            "the coordinates are in degrees: contours for maps need lengths",
+        )
+        .cure(reproject_first()));
+    }
+    match units.disagreement() {
+        Some((plan, height)) => Err(Error::unsupported(format!(
+            "the plan is in {plan} and heights in {height}: contours for maps need one unit for both"
+        ))
+        .cure(reproject_first())),
+        None => Ok(()),
+    }
+}
+
+fn is_index(line: &MapLine, step: u32) -> bool {
+    line.number.rem_euclid(i64::from(step.max(1))) == 0
+}
+
+fn layer(
+    format: &str,
+    crs: &Option<Crs>,
+    names: &[&str],
+    records: impl Iterator<Item = (Shape, Vec<Value>)>,
+) -> Layer {
+    let (mut shapes, mut rows) = (Vec::new(), Vec::new());
+    for (i, (shape, mut row)) in records.enumerate() {
+        row.insert(0, Value::Whole(i as i64 + 1));
+        shapes.push(shape);
+        rows.push(row);
+    }
+    let names: Vec<String> = std::iter::once(&"ID")
+        .chain(names)
+        .map(|&name| name.to_owned())
+        .collect();
+    Layer {
+        format: format.to_owned(),
+        shapes,
+        crs: crs.clone(),
+        fields: names.clone(),
+        attributes: Some(Attributes { names, rows }),
+        ..Layer::default()
+    }
+}
+
+impl ContourMap {
+    /// Returns the lines with attributes: `ID` (from 1), `ELEV`, `DEPRESSION` (1 for a ring with
+    /// lower ground inside, else 0) and, if index contours are marked, `INDEX` (1 or 0). Vertices
+    /// have the height of their line.
+    pub fn lines(&self) -> Layer {
+        let record = |of: &MapLine| {
+            let level = of.line.level;
+            let points = of.line.points.iter().map(|&[x, y]| [x, y, level]).collect();
+            let mut row = vec![
+                Value::Number(level),
+                Value::Whole(i64::from(of.is_depression)),
+            ];
+            let index = self.index_step.map(|step| is_index(of, step));
+            row.extend(index.map(|is_index| Value::Whole(i64::from(is_index))));
+            (Shape::Lines(vec![points]), row)
+        };
+        let names = ["ELEV", "DEPRESSION", "INDEX"];
+        let names = &names[..if self.index_step.is_some() { 3 } else { 2 }];
+        layer(
+            "contours",
+            &self.crs,
+            names,
+            self.contours.lines.iter().map(record),
+        )
+    }
+
+    /// Returns the areas between the lines as polygons with attributes: `ID`, `ELEV_MIN` and
+    /// `ELEV_MAX`, the names that `gdal_contour -p` has.
+    pub fn bands(&self) -> Layer {
+        let record = |band: &terrain::Band| {
+            let ring = |ring: &Vec<[f64; 2]>| ring.iter().map(|&[x, y]| [x, y, f64::NAN]).collect();
+            let row = [band.low, band.high].map(Value::Number).to_vec();
+            (Shape::Polygon(band.rings.iter().map(ring).collect()), row)
+        };
+        let bands = self.contours.bands.iter().map(record);
+        layer("bands", &self.crs, &["ELEV_MIN", "ELEV_MAX"], bands)
+    }
+
+    /// Returns the labels as points with attributes: `ID`, `ELEV` and `ROTATION`, the direction of
+    /// the text in degrees counter-clockwise from the x axis.
+    pub fn labels(&self) -> Layer {
+        let record = |label: &ContourLabel| {
+            let [x, y] = label.at;
+            let row = [label.level, label.rotation].map(Value::Number).to_vec();
+            (Shape::Points(vec![[x, y, label.level]]), row)
+        };
+        let labels = self.labels.iter().map(record);
+        layer("labels", &self.crs, &["ELEV", "ROTATION"], labels)
+    }
+
+    /// Returns the counts.
+    pub fn summary(&self, options: &ContourOptions) -> MapSummary {
+        let mut drawn = ContourSummary::default();
+        for line in &self.contours.lines {
+            drawn.add(&line.line);
+        }
+        let moves = options.map.preset.is_some()
+            || options.map.smooth.is_some()
+            || options.map.simplify.is_some();
+        MapSummary {
+            left_out: self.contours.traced - drawn.lines,
+            drawn,
+            deviation: moves.then_some(self.contours.deviation),
+            bands: options.map.bands.then_some(self.contours.bands.len()),
+            labels: options.map.labels.map(|_| self.labels.len()),
+        }
+    }
+
+    /// Writes the areas if they were asked for, else the lines, in the format that the extension of
+    /// `target` names. What the format cannot keep is a notice.
+    ///
+    /// # Errors
+    /// If the format cannot be written, has no room for them, or the file cannot be written.
+    pub fn write(
+        &self,
+        options: &ContourOptions,
+        target: Destination,
+        context: &Context,
+    ) -> Result<()> {
+        let layer = if options.map.bands {
+            self.bands()
+        } else {
+            self.lines()
+        };
+        layers::write(&layer, target, context)
+    }
+
+    /// Writes the labels.
+    ///
+    /// # Errors
+    /// As [`write`](Self::write).
+    pub fn write_labels(&self, target: Destination, context: &Context) -> Result<()> {
+        layers::write(&self.labels(), target, context)
+    }
+}

@@ -1,0 +1,380 @@
+//! Contours that a map can use.
+//!
+//! Exact contours of lidar are no map: most are shorter than ten meters, and jagged. Here the
+//! surface is smoothed inside a tube, its contours are traced by [the rule](super), those that
+//! enclose too little are left out, and the others are smoothed and simplified in a corridor:
+//!
+//! ```text
+//! heights ──tube, nudge──▶ heights g on the same triangles ──▶ lines ──nests──▶ fewer lines
+//!                                                                                   │
+//!        lines ◀──pass B: the lattice shifted by half a cell──◀──pass A, cell by cell
+//! ```
+//!
+//! # What is promised
+//!
+//! - **No line is off the surface by more than the tolerance.** Both surfaces are linear on the
+//!   same triangles, so they differ most at vertices, by the tube at most. Lines differ from the
+//!   smoothed surface by the corridor at most: each new segment is followed through the triangles,
+//!   after rounding. The sum of both is the tolerance.
+//! - **Lines of two levels do not meet**, as their corridors have nothing in common.
+//! - **Lines of one level do not meet.** A vertex is removed, or moved, only if no vertex of the
+//!   level lies in the triangle that is swept. A segment that enters an empty triangle leaves it
+//!   through an old segment, which is excluded, or through the path of the vertex, which is tested.
+//! - **Held edges are met where the smoothed surface says.** These points stay, and no new segment
+//!   meets a held edge elsewhere: hard breaklines, walls, shores and banks.
+//! - **The result is a function of the surface.** Cells of a lattice from coordinate 0 are worked
+//!   on one by one, in the order of coordinates; chords and means stay inside a cell.
+
+mod bands;
+mod corridor;
+mod fit;
+mod labels;
+mod lattice;
+mod nests;
+mod passes;
+mod regions;
+mod relax;
+mod reshaped;
+mod room;
+mod rules;
+mod strand;
+mod thin;
+mod tube;
+
+use rayon::prelude::*;
+
+pub use self::bands::{Band, contour_bands};
+use self::bands::{Named, polygons, rim_arcs};
+use self::corridor::Corridor;
+pub use self::labels::{ContourLabel, LabelRules, LabelTops, contour_labels};
+use self::lattice::{Lattice, RingStart, Tracked};
+use self::nests::{Nests, SmallSide, small_side};
+use self::passes::Pass;
+use self::regions::Regions;
+use self::relax::Relaxing;
+use self::reshaped::Reshaped;
+pub use self::rules::MapRules;
+use self::rules::Scale;
+use self::tube::{Tube, nudge, smoothed};
+use super::contours;
+use super::index::LevelIndex;
+use super::line::start_at_smallest;
+use crate::data::{ContourLine, Surface, corners, doubled_area};
+use crate::error::Result;
+use crate::terrain::Levels;
+use crate::terrain::walk::{At, Locator};
+
+/// The radius of the smoothing of heights, in intervals.
+const RADIUS: f64 = 8.0;
+
+/// The largest move of a point in a pass, in intervals.
+const LARGEST_MOVE: f64 = 1.5;
+
+/// The contours of a surface for a map.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct MapContours {
+    /// The lines, sorted by level and then by their points. Higher ground is on the right; a ring
+    /// starts at its smallest point.
+    pub lines: Vec<MapLine>,
+    /// The number of lines before any were left out.
+    pub traced: usize,
+    /// The largest difference between the height of a line and the surface along it.
+    pub deviation: f64,
+    /// The areas between the lines, if they were [asked for](MapRules::with_bands), from the lowest
+    /// to the highest; see [`contour_bands`].
+    pub bands: Vec<Band>,
+}
+
+/// A contour of a map.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MapLine {
+    /// The line.
+    pub line: ContourLine,
+    /// How many intervals its level is above the base; of listed levels, the position in the list.
+    pub number: i64,
+    /// True for a ring with lower ground inside.
+    pub is_depression: bool,
+}
+
+/// Returns the contours of a surface for a map; those of [`contours`] if the rules ask for nothing.
+///
+/// # Errors
+/// Those of [`MapRules::check`] and [`contours`], and if the surface was found damaged.
+///
+/// # Complexity
+/// Linear in the faces, times the vertices within eight intervals of each, and in the points of the
+/// lines, times those of a level in a cell of the lattice; on all threads but for the graph of
+/// regions. About 100 bytes for each vertex, 10 for each face, and 80 for each point of the lines
+/// before they are simplified.
+pub fn map_contours(
+    surface: &dyn Surface,
+    levels: &Levels,
+    rules: &MapRules,
+) -> Result<MapContours> {
+    rules.check(levels)?;
+    if rules.is_plain() {
+        return exact(surface, levels, rules);
+    }
+    let scale = Scale::of(rules, levels);
+    let range = Range::of(surface);
+    let margin = scale.interval;
+    let index = LevelIndex::new(levels.within(range.low[2] - margin, range.high[2] + margin)?);
+    let mut heights = match rules.smooth {
+        Some(_) => {
+            let tube = Tube {
+                radius: RADIUS * scale.interval,
+                largest: scale.tube,
+            };
+            smoothed(surface, tube)
+        }
+        None => (0..surface.vertex_count() as u32)
+            .map(|vertex| surface.position(vertex)[2])
+            .collect(),
+    };
+    nudge(&mut heights, index.levels(), scale.delta);
+    let smooth = Reshaped { surface, heights };
+    let traced: Vec<ContourLine> = contours(&smooth as &dyn Surface, levels)?.collect();
+    let corridor = Corridor::new(&smooth, &index, scale.corridor);
+    let locator = Locator::new(&smooth)?;
+    let regions = Regions::of(&smooth, &index);
+    let lines: Vec<Tracked> = traced
+        .par_iter()
+        .map(|line| Tracked {
+            level: index.first_from(line.level),
+            at: corridor.spots(&locator, &line.points),
+            points: line.points.clone(),
+        })
+        .collect();
+    let sides = lines
+        .par_iter()
+        .map(|line| sides_of(line, &smooth, &locator, &regions));
+    let mut nests = Nests::new(sides.collect(), regions.count);
+    let extents = regions.extents(scale.interval);
+    let small: Vec<Option<SmallSide>> = nests
+        .sides(&extents)
+        .into_iter()
+        .zip(&traced)
+        .map(|(sides, line)| Some(small_side(sides?, turns_left(line))))
+        .collect();
+    let is_small = |line: usize, side: &SmallSide| {
+        let area = side.extent.area_in(scale.interval);
+        let level = traced[line].level;
+        let relief = side.extent.highest.max(level) - side.extent.lowest.min(level);
+        let is_depression = turns_left(&traced[line]) == Some(true);
+        let is_kept =
+            rules.keeps(area, relief / scale.interval) || (rules.keep_depressions && is_depression);
+        !is_kept
+    };
+    remove_where(&mut nests, &small, is_small);
+    let kept: Vec<usize> = (0..traced.len())
+        .filter(|&line| !nests.is_removed(line))
+        .collect();
+    let mut lines: Vec<Option<Tracked>> = lines.into_iter().map(Some).collect();
+    let mut drawn: Vec<Tracked> = kept.iter().filter_map(|&line| lines[line].take()).collect();
+    drop(lines);
+    if rules.smooth.is_some() || rules.simplify.is_some() {
+        for pass in passes(rules, &scale, &range) {
+            drawn = pass.run(drawn, index.levels(), &corridor, &locator);
+        }
+    }
+    let mut lengths = vec![f64::INFINITY; traced.len()];
+    for (&line, drawn) in kept.iter().zip(&drawn) {
+        lengths[line] = length(&drawn.points);
+    }
+    if rules.min_length > 0.0 {
+        remove_where(&mut nests, &small, |line, _| {
+            lengths[line] < rules.min_length
+        });
+    }
+    let mut found: Vec<MapLine> = kept
+        .iter()
+        .zip(drawn)
+        .filter(|&(&line, _)| !nests.is_removed(line))
+        .map(|(&line, drawn)| finished(&traced[line], levels, drawn.points))
+        .collect();
+    found.sort_by(|a, b| {
+        let order = a.line.level.total_cmp(&b.line.level);
+        order.then_with(|| {
+            a.line
+                .points
+                .partial_cmp(&b.line.points)
+                .unwrap_or(std::cmp::Ordering::Equal)
+        })
+    });
+    let bands = if rules.with_bands {
+        let of_lines: Vec<usize> = traced.iter().map(|l| index.first_from(l.level)).collect();
+        let bands = nests.bands(&of_lines, &regions.bands(), &extents);
+        let rim = rim_arcs(&smooth, &index, &regions, &bands);
+        let named = Named {
+            levels,
+            index: &index,
+            heights: [range.low[2], range.high[2]],
+        };
+        polygons(&named, found.iter().map(|line| &line.line), rim)?
+    } else {
+        Vec::new()
+    };
+    Ok(MapContours {
+        traced: traced.len(),
+        deviation: deviation(surface, &found)?,
+        lines: found,
+        bands,
+    })
+}
+
+/// Returns contours as they are.
+fn exact(surface: &dyn Surface, levels: &Levels, rules: &MapRules) -> Result<MapContours> {
+    let lines = contours(surface, levels)?.map(|line| finished(&line, levels, line.points.clone()));
+    let lines: Vec<MapLine> = lines.collect();
+    let bands = match rules.with_bands {
+        true => contour_bands(surface, levels)?,
+        false => Vec::new(),
+    };
+    Ok(MapContours {
+        traced: lines.len(),
+        deviation: 0.0,
+        lines,
+        bands,
+    })
+}
+
+/// Removes the lines whose small side is not wanted, with what is in it; those with the largest
+/// sides first, because the others are often inside.
+fn remove_where(
+    nests: &mut Nests,
+    small: &[Option<SmallSide>],
+    is_small: impl Fn(usize, &SmallSide) -> bool,
+) {
+    let of_line = |(line, side): (usize, &Option<SmallSide>)| {
+        let side = (*side)?;
+        (!nests.is_removed(line) && is_small(line, &side)).then_some((line, side))
+    };
+    let mut removed: Vec<(usize, SmallSide)> =
+        small.iter().enumerate().filter_map(of_line).collect();
+    removed.sort_by_key(|(_, side)| std::cmp::Reverse(side.extent.area));
+    for (line, side) in removed {
+        side.remove(line, nests);
+    }
+}
+
+/// Returns both passes: the lattice of the second one is shifted by half a cell, so that it rounds
+/// what the first one has fixed.
+fn passes(rules: &MapRules, scale: &Scale, range: &Range) -> [Pass; 2] {
+    let size = scale.cell(range.largest(), range.extent());
+    let relaxing = rules.smooth.map(|_| Relaxing {
+        half_width: RADIUS * scale.interval / 2.0,
+        largest_move: LARGEST_MOVE * scale.interval,
+    });
+    let pass = |origin, start, tolerance| Pass {
+        lattice: Lattice {
+            size,
+            origin,
+            start,
+        },
+        relaxing,
+        tolerance,
+    };
+    [
+        pass(0.0, RingStart::Least, rules.simplify.map(|d| d / 3.0)),
+        pass(size / 2.0, RingStart::Greatest, rules.simplify),
+    ]
+}
+
+/// Returns the regions on the left and on the right of a line, by the first of its segments that
+/// lies inside of a face.
+fn sides_of(
+    line: &Tracked,
+    surface: &Reshaped<'_>,
+    locator: &Locator<'_>,
+    regions: &Regions<'_>,
+) -> Option<[u32; 2]> {
+    line.points.windows(2).find_map(|ends| {
+        let middle = [0, 1].map(|axis| 0.5 * ends[0][axis] + 0.5 * ends[1][axis]);
+        let At::Inside { face } = locator.at(middle) else {
+            return None;
+        };
+        surface.face(face)?;
+        let [below, above] = [line.level, line.level + 1].map(|band| regions.region(face, band));
+        Some([below?, above?])
+    })
+}
+
+/// Returns whether a ring is counter-clockwise; `None` for an open line.
+fn turns_left(line: &ContourLine) -> Option<bool> {
+    line.is_closed().then(|| doubled_area(&line.points) > 0.0)
+}
+
+fn length(points: &[[f64; 2]]) -> f64 {
+    let segments = points.windows(2);
+    segments
+        .map(|ends| (ends[1][0] - ends[0][0]).hypot(ends[1][1] - ends[0][1]))
+        .sum()
+}
+
+/// Returns a line as it is drawn; a ring starts at its smallest point.
+fn finished(traced: &ContourLine, levels: &Levels, mut points: Vec<[f64; 2]>) -> MapLine {
+    if traced.is_closed() {
+        points.pop();
+        start_at_smallest(&mut points);
+        points.extend_from_within(..1);
+    }
+    MapLine {
+        is_depression: turns_left(traced) == Some(true),
+        number: levels.number_of(traced.level),
+        line: ContourLine {
+            level: traced.level,
+            points,
+        },
+    }
+}
+
+/// Returns the largest difference between the heights of lines and a surface along them. What
+/// rounding puts beyond the rim does not count.
+fn deviation(surface: &dyn Surface, lines: &[MapLine]) -> Result<f64> {
+    let locator = Locator::new(surface)?;
+    let of_line = |MapLine { line, .. }: &MapLine| {
+        let stretches = locator.along(&line.points)?;
+        let points = stretches.iter().flat_map(|stretch| stretch.iter());
+        Ok(points.fold(0.0, |most: f64, p| most.max((p.at[2] - line.level).abs())))
+    };
+    lines
+        .par_iter()
+        .map(of_line)
+        .try_reduce(|| 0.0, |a, b| Ok(a.max(b)))
+}
+
+/// The box around the vertices of faces.
+struct Range {
+    low: [f64; 3],
+    high: [f64; 3],
+}
+
+impl Range {
+    fn of(surface: &dyn Surface) -> Self {
+        let mut range = Range {
+            low: [f64::INFINITY; 3],
+            high: [f64::NEG_INFINITY; 3],
+        };
+        for (_, vertices) in corners(surface) {
+            for at in vertices.map(|v| surface.position(v)) {
+                let ends = range.low.iter_mut().zip(&mut range.high);
+                for ((low, high), coordinate) in ends.zip(at) {
+                    *low = low.min(coordinate);
+                    *high = high.max(coordinate);
+                }
+            }
+        }
+        range
+    }
+
+    /// Returns the largest coordinate in plan, without its sign.
+    fn largest(&self) -> f64 {
+        let of_axis = |axis: usize| self.low[axis].abs().max(self.high[axis].abs());
+        of_axis(0).max(of_axis(1))
+    }
+
+    fn extent(&self) -> f64 {
+        (self.high[0] - self.low[0]).max(self.high[1] - self.low[1])
+    }
+}

@@ -1,0 +1,147 @@
+//! What is asked of contours for maps.
+
+use crate::error::{Error, Plain, Result};
+use crate::terrain::Levels;
+
+/// How contours become those of a map. All lengths are in the unit of the heights, and plan and
+/// heights have the same unit.
+///
+/// The default changes nothing.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct MapRules {
+    /// The largest difference between the height of a line and the surface along it, if lines are
+    /// smoothed: at most half of the interval.
+    pub smooth: Option<f64>,
+    /// How far a vertex that is left out may be from the line, if lines are simplified. The height
+    /// along them differs by half of the interval at most, or as far as they are smoothed.
+    pub simplify: Option<f64>,
+    /// Lines that enclose less, or cut off less at the rim, are left out; those that enclose a
+    /// fifth are kept where the ground within rises or falls by an interval.
+    pub min_area: f64,
+    /// Lines that are shorter, once they are smoothed, are left out with what they enclose.
+    pub min_length: f64,
+    /// Keeps depressions, whatever they enclose, unless a line around them is left out.
+    pub keep_depressions: bool,
+    /// Finds the areas between the lines, too.
+    pub with_bands: bool,
+}
+
+/// The area below which lines are left out, in squares of the interval.
+const AREA: f64 = 50.0;
+
+/// How far vertices that are left out may be from a line, in intervals.
+const SIMPLIFY: f64 = 0.05;
+
+/// The relief that a line has to enclose, in intervals.
+const LEAST_RELIEF: f64 = 0.1;
+
+/// The share of the least area that suffices where a line encloses the relief of an interval.
+const SMALL_AREA: f64 = 0.2;
+
+impl MapRules {
+    /// Returns the rules of a printed map with this interval: lines within half of the interval,
+    /// simplified within a twentieth, and none that encloses less than 50 times the square of it.
+    pub fn cartographic(interval: f64) -> Self {
+        MapRules {
+            smooth: Some(0.5 * interval),
+            simplify: Some(SIMPLIFY * interval),
+            min_area: AREA * interval * interval,
+            ..MapRules::default()
+        }
+    }
+
+    /// Returns true if contours stay as they are.
+    pub(super) fn is_plain(&self) -> bool {
+        let changes = self.smooth.is_some() || self.simplify.is_some();
+        !changes && self.min_area <= 0.0 && self.min_length <= 0.0
+    }
+
+    /// Returns true if a line is kept that has an area and a relief on its small side, the relief
+    /// in intervals.
+    pub(super) fn keeps(&self, area: f64, relief: f64) -> bool {
+        let is_large = area >= self.min_area && relief >= LEAST_RELIEF;
+        let is_steep = area >= SMALL_AREA * self.min_area && relief >= 1.0;
+        self.min_area <= 0.0 || is_large || is_steep
+    }
+
+    /// Returns an error unless the rules make sense for some levels.
+    ///
+    /// # Errors
+    /// If a length or area is negative or not finite, or lines would be farther from the surface
+    /// than half of the interval.
+    pub fn check(&self, levels: &Levels) -> Result<()> {
+        let interval = levels.interval();
+        let mut values = [
+            self.smooth,
+            self.simplify,
+            Some(self.min_area),
+            Some(self.min_length),
+        ]
+        .into_iter()
+        .flatten();
+        if let Some(value) = values.find(|value| !(value.is_finite() && *value >= 0.0)) {
+            return Err(Error::usage(format!(
+                "a length or area of the rules for contours is {value}, expected 0 or more"
+            )));
+        }
+        match self.smooth {
+            Some(smooth) if smooth > 0.5 * interval => Err(Error::usage(format!(
+                "smoothed lines may be off the surface by {}, more than half of the interval {}: lines of two levels could meet",
+                Plain(smooth),
+                Plain(interval)
+            ))
+            .cure(format!(
+                "use {} at most, or a larger interval",
+                Plain(0.5 * interval)
+            ))),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// What the recipe takes, in units of the plan and the heights.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Scale {
+    /// The interval.
+    pub(super) interval: f64,
+    /// The least distance of heights from levels.
+    pub(super) delta: f64,
+    /// The half width of the corridor around each level, on the smoothed surface.
+    pub(super) corridor: f64,
+    /// The largest change of a height by smoothing.
+    pub(super) tube: f64,
+}
+
+/// The share of the tolerance that lines have; the surface has the rest.
+const SHARE: f64 = 0.2;
+
+/// What is kept for the rounding of heights along lines, relative to the tolerance.
+const ROUNDING: f64 = 1e-6;
+
+impl Scale {
+    pub(super) fn of(rules: &MapRules, levels: &Levels) -> Self {
+        let interval = levels.interval();
+        let delta = 1e-4 * interval;
+        let whole = rules.smooth.unwrap_or(0.5 * interval);
+        let usable = (whole * (1.0 - ROUNDING) - 2.0 * delta).max(0.0);
+        let corridor = match rules.smooth {
+            Some(_) => SHARE * usable,
+            None => usable,
+        };
+        Scale {
+            interval,
+            delta,
+            corridor,
+            tube: rules.smooth.map_or(0.0, |_| usable - corridor),
+        }
+    }
+
+    /// Returns the side of the cells of the lattice, for coordinates up to `largest` and a surface
+    /// of an extent. Cells larger than usual keep their number in bounds where a surface is vast.
+    pub(super) fn cell(&self, largest: f64, extent: f64) -> f64 {
+        let usual = 64.0 * self.interval.max(1.0);
+        usual
+            .max(largest * 2f64.powi(-40))
+            .max(extent * 2f64.powi(-16))
+    }
+}

@@ -1,0 +1,235 @@
+//! Heights smoothed inside a tube around those of the surface.
+
+use rayon::prelude::*;
+
+use super::fit::Fit;
+use crate::data::{Surface, corners};
+
+/// How often all heights are smoothed.
+const PASSES: usize = 4;
+
+/// The least number of vertices for a fit.
+const LEAST_COUNT: usize = 8;
+
+/// How far the weighted mean of the positions may be from a vertex, in radii. Beyond, the vertex is
+/// at the border of what is known, and a fit would extrapolate.
+const LARGEST_ECCENTRICITY: f64 = 0.25;
+
+/// The vertices that a thread takes at a time.
+const BATCH: usize = 1 << 10;
+
+/// No vertex.
+const NONE: u32 = u32::MAX;
+
+/// How far heights are smoothed.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Tube {
+    /// The radius around each vertex, in plan.
+    pub(super) radius: f64,
+    /// The largest change of a height.
+    pub(super) largest: f64,
+}
+
+/// Returns smoothed heights for all vertices of a surface; held vertices keep theirs.
+///
+/// Each height becomes that of a quadric at the vertex, fitted to the vertices within the radius
+/// that edges lead to, but not through held vertices; then it is cut to the tube. All are smoothed
+/// at once, four times. Sums are made in the order of coordinates, so that they depend on the
+/// surface alone.
+///
+/// # Complexity
+/// Proportional to the vertices, times those within the radius of each, on all threads. About 80
+/// bytes for each vertex, of which 8 remain.
+pub(super) fn smoothed(surface: &dyn Surface, tube: Tube) -> Vec<f64> {
+    let vertices = Vertices::of(surface);
+    let original: Vec<f64> = vertices.positions.iter().map(|p| p[2]).collect();
+    let mut heights = original.clone();
+    for _ in 0..PASSES {
+        heights = vertices.smooth(&heights, &original, tube);
+    }
+    let mut all: Vec<f64> = (0..surface.vertex_count() as u32)
+        .map(|vertex| surface.position(vertex)[2])
+        .collect();
+    for (&number, height) in vertices.numbers.iter().zip(heights) {
+        all[number as usize] = height;
+    }
+    all
+}
+
+/// The vertices that have faces, in the order of their coordinates, and the edges between them.
+struct Vertices {
+    /// The number of each in the surface.
+    numbers: Vec<u32>,
+    positions: Vec<[f64; 3]>,
+    is_held: Vec<bool>,
+    /// Where the neighbors of each vertex start, and where the last ones end.
+    starts: Vec<u32>,
+    neighbors: Vec<u32>,
+}
+
+impl Vertices {
+    fn of(surface: &dyn Surface) -> Self {
+        let mut ranks = vec![NONE; surface.vertex_count()];
+        for (_, vertices) in corners(surface) {
+            for v in vertices {
+                ranks[v as usize] = 0;
+            }
+        }
+        let used = (0..surface.vertex_count() as u32).filter(|&v| ranks[v as usize] == 0);
+        let mut sorted: Vec<([f64; 3], u32)> = used.map(|v| (surface.position(v), v)).collect();
+        sorted.par_sort_unstable_by(|(a, v), (b, w)| {
+            let by_axis = (0..3).map(|axis| a[axis].total_cmp(&b[axis]));
+            by_axis
+                .fold(std::cmp::Ordering::Equal, std::cmp::Ordering::then)
+                .then(v.cmp(w))
+        });
+        for (rank, (_, vertex)) in sorted.iter().enumerate() {
+            ranks[*vertex as usize] = rank as u32;
+        }
+        let mut is_held = vec![false; sorted.len()];
+        let mut starts = vec![0; sorted.len() + 1];
+        // Each edge between two faces is seen in both directions, one at the rim in one.
+        let each_edge = |take: &mut dyn FnMut(u32, u32)| {
+            for (face, vertices) in corners(surface) {
+                for i in 0..3 {
+                    let [a, b] = [1, 2].map(|k| ranks[vertices[(i + k) % 3] as usize]);
+                    take(a, b);
+                    if surface.neighbor(face, i).is_none() {
+                        take(b, a);
+                    }
+                }
+            }
+        };
+        each_edge(&mut |a, _| starts[a as usize + 1] += 1);
+        for i in 1..starts.len() {
+            starts[i] += starts[i - 1];
+        }
+        let mut next = starts.clone();
+        let mut neighbors = vec![NONE; starts.last().copied().unwrap_or(0) as usize];
+        each_edge(&mut |a, b| {
+            neighbors[next[a as usize] as usize] = b;
+            next[a as usize] += 1;
+        });
+        if surface.has_lines() {
+            for (face, vertices) in corners(surface) {
+                for i in (0..3).filter(|&i| surface.edge_kind(face, i).is_hard()) {
+                    for k in [1, 2] {
+                        is_held[ranks[vertices[(i + k) % 3] as usize] as usize] = true;
+                    }
+                }
+            }
+        }
+        let (positions, numbers) = sorted.into_iter().unzip();
+        Vertices {
+            numbers,
+            positions,
+            is_held,
+            starts,
+            neighbors,
+        }
+    }
+
+    /// Returns the heights after one pass.
+    fn smooth(&self, heights: &[f64], original: &[f64], tube: Tube) -> Vec<f64> {
+        let mut after = heights.to_vec();
+        after.par_chunks_mut(BATCH).enumerate().for_each_init(
+            || Around::new(self.positions.len()),
+            |around, (batch, after)| {
+                for (i, height) in after.iter_mut().enumerate() {
+                    let vertex = (batch * BATCH + i) as u32;
+                    let center = vertex as usize;
+                    if self.is_held[center] {
+                        continue;
+                    }
+                    around.collect(self, vertex, tube.radius);
+                    let fit = self.fit(around, center, heights, tube.radius);
+                    let is_one_sided = fit.eccentricity() > LARGEST_ECCENTRICITY;
+                    if fit.count < LEAST_COUNT || is_one_sided {
+                        continue;
+                    }
+                    let (z, fitted) = (original[center], heights[center] + fit.at_center());
+                    if fitted.is_finite() {
+                        *height = fitted.max(z - tube.largest).min(z + tube.largest);
+                    }
+                }
+            },
+        );
+        after
+    }
+
+    fn fit(&self, around: &Around, center: usize, heights: &[f64], radius: f64) -> Fit {
+        let mut fit = Fit::default();
+        let [x, y, _] = self.positions[center];
+        for &other in &around.found {
+            let other = other as usize;
+            let at = self.positions[other];
+            let [dx, dy] = [(at[0] - x) / radius, (at[1] - y) / radius];
+            let inner = 1.0 - (dx * dx + dy * dy);
+            let weight = inner * inner * inner;
+            fit.add([dx, dy], heights[other] - heights[center], weight);
+        }
+        fit
+    }
+}
+
+/// The vertices around another one.
+struct Around {
+    /// The vertices, in the order of coordinates.
+    found: Vec<u32>,
+    /// The last vertex around which each one was found.
+    seen: Vec<u32>,
+}
+
+impl Around {
+    fn new(count: usize) -> Self {
+        Around {
+            found: Vec::new(),
+            seen: vec![NONE; count],
+        }
+    }
+
+    /// Collects the vertices within a radius that edges lead to, but not through held ones.
+    fn collect(&mut self, vertices: &Vertices, center: u32, radius: f64) {
+        let [x, y, _] = vertices.positions[center as usize];
+        let square = radius * radius;
+        self.found.clear();
+        self.found.push(center);
+        self.seen[center as usize] = center;
+        let mut next = 0;
+        while let Some(&vertex) = self.found.get(next) {
+            next += 1;
+            let vertex = vertex as usize;
+            if vertices.is_held[vertex] {
+                continue;
+            }
+            let [start, end] = [0, 1].map(|k| vertices.starts[vertex + k] as usize);
+            for &other in &vertices.neighbors[start..end] {
+                let seen = &mut self.seen[other as usize];
+                if *seen == center {
+                    continue;
+                }
+                let at = vertices.positions[other as usize];
+                let [dx, dy] = [at[0] - x, at[1] - y];
+                if dx * dx + dy * dy < square {
+                    *seen = center;
+                    self.found.push(other);
+                }
+            }
+        }
+        self.found.sort_unstable();
+    }
+}
+
+/// Raises heights that are within a distance of a level to that distance above it, so that no
+/// vertex is on a level. Levels are ascending and farther apart than that.
+pub(super) fn nudge(heights: &mut [f64], levels: &[f64], distance: f64) {
+    heights.par_iter_mut().for_each(|height| {
+        let above = levels.partition_point(|&level| level < *height);
+        let near = levels[above.saturating_sub(1)..levels.len().min(above + 1)]
+            .iter()
+            .find(|&&level| (*height - level).abs() < distance);
+        if let Some(level) = near {
+            *height = level + distance;
+        }
+    });
+}

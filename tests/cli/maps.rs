@@ -1,0 +1,191 @@
+//! Contours for maps, as they are typed.
+
+use std::fmt::Write;
+
+use serde_json::Value;
+
+use super::{bytes, folder_with, run_in};
+
+/// Rough hills of 60 x 60 points, 2 apart.
+fn hills() -> String {
+    let mut text = String::new();
+    for k in 0..3600_u32 {
+        let [x, y] = [k % 60, k / 60].map(|c| 2.0 * f64::from(c));
+        let rough = f64::from(k.wrapping_mul(2_654_435_761) >> 24) / 400.0;
+        let z = 6.0 * (x / 19.0).sin() * (y / 23.0).cos() + rough;
+        writeln!(text, "{x} {y} {z:.2}").unwrap();
+    }
+    text
+}
+
+fn features(bytes: &[u8]) -> Vec<Value> {
+    let read: Value = serde_json::from_slice(bytes).unwrap();
+    read["features"].as_array().unwrap().clone()
+}
+
+#[test]
+fn a_map_has_lines_labels_and_a_promise() {
+    let folder = folder_with(&[("hills.xyz", &hills())]);
+    run_in(&folder, &["contour", "hills.xyz", "-o", "exact.geojson"]).works(&["contours "]);
+    let words = [
+        "contour",
+        "hills.xyz",
+        "--preset",
+        "cartographic",
+        "--labels-output",
+        "labels.geojson",
+        "-o",
+        "map.geojson",
+        "-o",
+        "map.shp",
+    ];
+    run_in(&folder, &words).works(&[
+        "left out    ",
+        "off the surface at most, no crossings",
+        "labels      ",
+        "written     map.geojson",
+        "written     labels.geojson",
+    ]);
+    let [exact, map, labels] = ["exact.geojson", "map.geojson", "labels.geojson"]
+        .map(|name| features(&bytes(&folder, name)));
+    assert!(map.len() < exact.len() && !labels.is_empty());
+    for line in &map {
+        let of = &line["properties"];
+        let level = of["ELEV"].as_f64().unwrap();
+        assert_eq!(of["INDEX"] == 1, level % 5.0 == 0.0, "{of}");
+        assert!(of["DEPRESSION"] == 0 || of["DEPRESSION"] == 1, "{of}");
+    }
+    for label in &labels {
+        assert_eq!(label["geometry"]["type"], "Point");
+        let rotation = label["properties"]["ROTATION"].as_f64().unwrap();
+        assert!(-90.0 < rotation && rotation <= 90.0);
+        assert_eq!(label["properties"]["ELEV"].as_f64().unwrap() % 5.0, 0.0);
+    }
+    assert!(bytes(&folder, "map.shp").len() > 100);
+    run_in(&folder, &words).fails(1, &["map.geojson: the file exists"]);
+}
+
+#[test]
+fn neither_order_nor_threads_show_in_the_bytes() {
+    let text = hills();
+    let mut rows: Vec<&str> = text.lines().collect();
+    rows.sort_by_key(|row| row.bytes().rev().collect::<Vec<u8>>());
+    let folder = folder_with(&[("a.xyz", &text), ("b.xyz", &rows.join("\n"))]);
+    let make = |input: &str, threads: &str| {
+        let labels = ["--labels", "uphill", "--labels-output", "l.geojson"];
+        let words = [
+            "contour",
+            input,
+            "--smooth",
+            "0.25",
+            "--simplify",
+            "0.1",
+            "--threads",
+            threads,
+        ];
+        let outputs = ["-o", "c.geojson", "--overwrite"];
+        run_in(&folder, &[&words[..], &labels, &outputs].concat()).works(&["promise     0.2"]);
+        (bytes(&folder, "c.geojson"), bytes(&folder, "l.geojson"))
+    };
+    assert!(make("a.xyz", "1") == make("b.xyz", "2"));
+}
+
+#[test]
+fn bands_are_polygons_with_both_heights() {
+    let folder = folder_with(&[("hills.xyz", &hills())]);
+    for (more, promise) in [
+        (&[][..], "bands "),
+        (&["--preset", "cartographic"][..], "promise "),
+    ] {
+        let words = [
+            "contour",
+            "hills.xyz",
+            "--interval",
+            "2",
+            "-p",
+            "-o",
+            "b.geojson",
+            "--overwrite",
+        ];
+        run_in(&folder, &[&words[..], more].concat()).works(&[promise]);
+        let bands = features(&bytes(&folder, "b.geojson"));
+        assert!(bands.len() > 5);
+        for band in bands {
+            assert_eq!(band["geometry"]["type"], "Polygon");
+            let of = &band["properties"];
+            let [low, high] = ["ELEV_MIN", "ELEV_MAX"].map(|name| of[name].as_f64().unwrap());
+            assert_eq!(high - low, 2.0, "{of}");
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_is_refused_with_a_cure() {
+    let folder = folder_with(&[
+        ("hills.xyz", &hills()),
+        ("degrees.xyz", "6.1 50.1 1\n6.2 50.1 2\n6.1 50.2 3\n"),
+    ]);
+    for (words, expected) in [
+        (
+            "contour hills.xyz --smooth 0.7 -o c.shp",
+            &["more than half of the interval 1", "use 0.5 at most"][..],
+        ),
+        (
+            "contour hills.xyz --smooth --tiles 2x2 -o c.shp",
+            &[
+                "contours for maps are drawn in one piece",
+                "without --tiles",
+            ],
+        ),
+        (
+            "contour degrees.xyz --a-srs EPSG:4326 --force-degrees --max-edge none --smooth -o c.shp",
+            &["the coordinates are in degrees", "reproject"],
+        ),
+        (
+            "contour hills.xyz --labels uphill -o c.shp",
+            &["--labels-output <FILE>"],
+        ),
+        (
+            "contour hills.xyz --smooth --labels-output c.shp -o c.shp",
+            &["the output is named twice"],
+        ),
+        (
+            "contour hills.xyz --labels-output l.tif -o c.shp",
+            &["`.tif` is not a format"],
+        ),
+    ] {
+        let words: Vec<&str> = words.split(' ').collect();
+        let code = if words.contains(&"--force-degrees") {
+            1
+        } else {
+            2
+        };
+        run_in(&folder, &words).fails(code, expected);
+    }
+    assert!(!folder.path().join("c.shp").exists());
+}
+
+#[test]
+fn options_of_maps_work_alone_and_with_a_dem() {
+    let folder = folder_with(&[("hills.xyz", &hills())]);
+    run_in(
+        &folder,
+        &["dem", "hills.xyz", "--resolution", "2", "-o", "d.tif"],
+    )
+    .works(&[]);
+    for options in [
+        &["--smooth"][..],
+        &["--simplify", "1"],
+        &["--min-length", "20"],
+        &["--min-area", "40", "--keep-depressions"],
+        &["--index-every", "2"],
+        &["--labels-output", "l.shp", "--label-height", "3"],
+        &["--levels", "1,2.5,4", "--smooth"],
+    ] {
+        for input in ["hills.xyz", "d.tif"] {
+            let words = ["contour", input, "-o", "c.geojson", "--overwrite"];
+            run_in(&folder, &[&words[..], options].concat()).works(&["contours "]);
+            assert!(!features(&bytes(&folder, "c.geojson")).is_empty());
+        }
+    }
+}
