@@ -105,7 +105,7 @@ fn wrong_usage_ends_with_2_and_leaves_nothing() {
             "--a-srs",
         ),
         (&["tin", "a.xyz", "-o", "t.dwg"], ".ply, .obj, .off, .xml"),
-        (&["tin", "a.xyz", "-o", "t"], ".ply, .obj, .off, .stl"),
+        (&["tin", "a.xyz", "-o", "t"], ".ply, .obj, .off, .xml"),
         (&["dem", "a.xyz", "-o", "t.png"], ".tif"),
         (&["contour", "a.xyz", "-o", "t.dwg"], ".shp, .geojson"),
         (&["hillshade", "a.xyz", "-o", "t.jpg"], ".tif, .tiff, .png"),

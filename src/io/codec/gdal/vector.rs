@@ -200,7 +200,7 @@ fn kept(value: FieldValue) -> Value {
         FieldValue::Integer64Value(whole) => Value::Whole(whole),
         FieldValue::RealValue(number) => Value::Number(number),
         FieldValue::DateValue(date) => Value::Text(date.to_string()),
-        FieldValue::DateTimeValue(time) => Value::Text(time.to_rfc3339()),
+        FieldValue::DateTimeValue(time) => Value::Text(time.to_string()),
         // Lists.
         other => Value::Text(format!("{other:?}")),
     }
