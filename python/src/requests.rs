@@ -437,6 +437,7 @@ impl NumberOrName {
 pub(crate) struct ReadArguments {
     columns: Option<String>,
     partial: bool,
+    copc_resolution: Option<f64>,
 }
 
 impl ReadArguments {
@@ -458,6 +459,7 @@ impl ReadArguments {
         Ok(points::Options {
             columns: columns.transpose()?,
             cut,
+            resolution: self.copc_resolution,
             ..points::Options::default()
         })
     }

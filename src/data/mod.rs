@@ -67,7 +67,9 @@ pub use mesh::Mesh;
 pub(crate) use mesh::{area_of, not_finite, orientation};
 pub(crate) use multiples::Multiples;
 pub(crate) use named::named;
-pub use points::{PointBatch, PointFlags, PointInfo, PointSink, PointSource, PointSummary};
+pub use points::{
+    PartRead, PointBatch, PointFlags, PointInfo, PointSink, PointSource, PointSummary,
+};
 pub use profile::{LinePoint, Profile, Profiles, Station, Stretch};
 pub use ramp::{ColorMatch, ColorRamp, ColorStop, Colors, Rgba, StopAt};
 pub use returns::Return;

@@ -153,10 +153,45 @@ pub trait PointSource {
         false
     }
 
+    /// Restricts reading to the parts of the file that may have points in a window, in plan and
+    /// with its border, by an index that the file has. Points outside of the window may still be
+    /// returned; all points keep their order. Returns `None`, and changes nothing, without an
+    /// index. To be called before the first batch is read, and before [`thin`](Self::thin).
+    ///
+    /// # Errors
+    /// If the index is damaged.
+    fn narrow(&mut self, window: &Bounds) -> Result<Option<PartRead>> {
+        let _ = window;
+        Ok(None)
+    }
+
+    /// Restricts reading to the coarse levels of the file: to the first one on which points are at
+    /// most `spacing` apart, and those above it. The stated number of points is that of these
+    /// levels then. Returns `None`, and changes nothing, if points have no levels. To be called
+    /// when [`narrow`](Self::narrow) may.
+    ///
+    /// # Errors
+    /// If the index is damaged.
+    fn coarsen(&mut self, spacing: f64) -> Result<Option<PartRead>> {
+        let _ = spacing;
+        Ok(None)
+    }
+
     /// Warnings from reading, such as a file that ends early; complete after the last batch.
     fn warnings(&self) -> &[Wording] {
         &[]
     }
+}
+
+/// How much of a file is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PartRead {
+    /// The number of parts that are read, such as nodes of an octree.
+    pub parts: usize,
+    /// The number of parts that would have been read otherwise.
+    pub of: usize,
+    /// The number of points that are read.
+    pub points: u64,
 }
 
 /// What a [`PointSink`] wrote.

@@ -44,6 +44,7 @@ settings! {
     Class = "class",
     Columns = "columns",
     Convex = "convex",
+    CopcResolution = "copc-resolution",
     CrossingReport = "crossing-report",
     CrossingTolerance = "crossing-tolerance",
     CrossingZ = "crossing-z",

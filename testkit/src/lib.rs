@@ -3,6 +3,7 @@
 pub mod boxes;
 pub mod case;
 pub mod cells;
+pub mod copc;
 pub mod judge;
 pub mod lidar;
 pub mod picture;

@@ -32,6 +32,7 @@ const NOT_IN_TILES: &[(&str, &str)] = &[
     ("Triangulated", "a time; each task has its own"),
     ("Uncertain", "tiles use all points, whatever the bounds"),
     ("FilesOutside", "tiles use all points, whatever the bounds"),
+    ("NodesRead", "tiles use all points, whatever the bounds"),
     (
         "PartForLinear",
         "of other methods than linear, which tiles refuse",

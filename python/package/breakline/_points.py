@@ -9,10 +9,11 @@ from ._call import Progress, call
 from ._columns import Points
 
 
-def _read(columns: Any, partial: bool) -> "dict[str, Any]":
+def _read(columns: Any, partial: bool, copc_resolution: Any = None) -> "dict[str, Any]":
     if columns is not None and not isinstance(columns, str):
         columns = ",".join(map(str, _inputs.whole_numbers(columns, "columns", 255)))
-    return {"columns": columns, "partial": bool(partial)}
+    resolution = _inputs.optional_number(copc_resolution, "copc_resolution")
+    return {"columns": columns, "partial": bool(partial), "copc_resolution": resolution}
 
 
 def _selection(
@@ -62,6 +63,7 @@ def read_points(
     to_crs: Any = None,
     columns: Any = None,
     partial: bool = False,
+    copc_resolution: Optional[float] = None,
     threads: Optional[int] = None,
     progress: Progress = None,
 ) -> Points:
@@ -78,7 +80,7 @@ def read_points(
     drop_withheld : bool
         Leave out points that are flagged as withheld.
     bounds : (xmin, ymin, xmax, ymax), optional
-        A rectangle to clip to, including its border.
+        A rectangle to clip to, including its border. Of COPC files only the nodes are read that meet it.
     boundary : path or list of paths, optional
         Polygons to clip to.
     thin : str, optional
@@ -98,6 +100,9 @@ def read_points(
         Columns of text files: ``"PNEZD"``, ``"XYZ"``, or numbers from 1.
     partial : bool
         Use what is left of files that are cut or damaged: LAS, LAZ, text with a count, shapefiles.
+    copc_resolution : float, optional
+        Read only the coarse levels of COPC files: to the first one on which points are at most so far apart. All inputs
+        must be COPC.
     threads : int, optional
         Number of threads; one per core by default.
     progress : bool or callable, optional
@@ -130,7 +135,7 @@ def read_points(
     selection = _selection(classes, returns, drop_withheld, bounds, boundary, thin, thin_keep, seed)
     with call(threads, progress) as request:
         found = _breakline.read_points(
-            _inputs.files(paths, "paths"), _read(columns, partial), _systems(crs, to_crs), selection, request
+            _inputs.files(paths, "paths"), _read(columns, partial, copc_resolution), _systems(crs, to_crs), selection, request
         )
     return Points(**found)
 
@@ -152,6 +157,7 @@ def points(
     to_crs: Any = None,
     columns: Any = None,
     partial: bool = False,
+    copc_resolution: Optional[float] = None,
     overwrite: bool = False,
     threads: Optional[int] = None,
     progress: Progress = None,
@@ -170,7 +176,8 @@ def points(
         Round coordinates to the nearest step of the first file's scale, if scales and offsets do not fit together.
     overwrite : bool
         Replace a file that exists.
-    classes, returns, drop_withheld, bounds, boundary, thin, thin_keep, seed, crs, to_crs, columns, partial
+    classes, returns, drop_withheld, bounds, boundary, thin, thin_keep, seed, crs, to_crs, columns, partial,
+    copc_resolution
         As for :func:`read_points`.
     threads, progress
         As for :func:`read_points`.
@@ -196,7 +203,7 @@ def points(
     with call(threads, progress) as request:
         return _breakline.write_points(
             _inputs.files(inputs, "inputs"),
-            _read(columns, partial),
+            _read(columns, partial, copc_resolution),
             _systems(crs, to_crs),
             selection,
             _inputs.path(output, "output"),

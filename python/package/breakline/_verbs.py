@@ -661,6 +661,7 @@ def info(
     *,
     columns: Any = None,
     partial: bool = False,
+    copc_resolution: Optional[float] = None,
     threads: Optional[int] = None,
     progress: Progress = None,
 ) -> "dict[str, Any]":
@@ -672,6 +673,8 @@ def info(
         Points, a vector layer, a raster or a mesh; read to its end.
     columns, partial, threads, progress
         As for :func:`tin`.
+    copc_resolution : float, optional
+        As for :func:`read_points`.
 
     Returns
     -------
@@ -687,7 +690,7 @@ def info(
     """
     with call(threads, progress) as request:
         found: "dict[str, Any]" = json.loads(
-            _breakline.info(_inputs.path(path, "path"), _read(columns, partial), request)
+            _breakline.info(_inputs.path(path, "path"), _read(columns, partial, copc_resolution), request)
         )
     return found
 

@@ -34,7 +34,7 @@ pub(crate) fn run(args: &PointsArgs, console: &Console) -> Result<Exit> {
     };
     let request = PointsRequest {
         files,
-        read: args.read.options(),
+        read: args.levels.of(args.read.options()),
         classes: ClassRange::all(&args.class),
         returns: ReturnRange::all(&args.returns),
         withheld: if args.drop_withheld {

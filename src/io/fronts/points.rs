@@ -37,6 +37,36 @@ pub fn open(path: impl AsRef<Path>) -> Result<Box<dyn PointSource + Send>> {
 /// As [`open`].
 pub fn open_with(path: impl AsRef<Path>, options: Options) -> Result<Box<dyn PointSource + Send>> {
     let path = path.as_ref();
+    let mut source = open_whole(path, options)?;
+    if let Some(spacing) = options.resolution {
+        if spacing.is_nan() || spacing <= 0.0 {
+            return Err(Error::usage(wording![
+                Setting::CopcResolution,
+                format!(" is {spacing}, expected a length above zero")
+            ]));
+        }
+        source
+            .coarsen(spacing)?
+            .ok_or_else(|| without_levels(path))?;
+    }
+    Ok(source)
+}
+
+#[cold]
+fn without_levels(path: &Path) -> Error {
+    Error::usage("the file has no octree, so its points have no levels to choose from")
+        .in_file(path)
+        .cure(wording![
+            "leave out ",
+            Setting::CopcResolution,
+            ", which is for COPC; ",
+            Setting::Thin,
+            " thins points of any format"
+        ])
+}
+
+/// Opens a file with all of its levels.
+fn open_whole(path: &Path, options: Options) -> Result<Box<dyn PointSource + Send>> {
     if path.as_os_str() == "-" {
         return open_stream(io::stdin(), Path::new("standard input"), options);
     }

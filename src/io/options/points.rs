@@ -11,6 +11,9 @@ pub struct Options {
     pub cut: OnDamage,
     /// How much is read of each point of LAS and LAZ.
     pub detail: Detail,
+    /// Of files with an octree (COPC), only the coarse levels are read: to the first one on which
+    /// points are at most so far apart, and those above it. It is an error if a file has none.
+    pub resolution: Option<f64>,
 }
 
 impl Options {

@@ -29,6 +29,15 @@ pub enum Notice {
     },
     /// All points of a file were read; with their number.
     PointsRead(PathBuf, u64),
+    /// Of a file with an octree, only the nodes were read that may have points within the bounds.
+    NodesRead {
+        /// The file.
+        path: PathBuf,
+        /// How many were read.
+        read: usize,
+        /// How many there are.
+        nodes: usize,
+    },
     /// A warning of a reader or a writer about a file.
     Reader(PathBuf, Wording),
     /// What a task of a job found, as the file of the task keeps it.
@@ -512,6 +521,7 @@ impl Notice {
             | Notice::WithoutClasses(_)
             | Notice::LayerRead { .. }
             | Notice::PointsRead(..)
+            | Notice::NodesRead { .. }
             | Notice::Triangulated(_)
             | Notice::Uncertain(..) => Severity::Detail,
             Notice::GroundUsed

@@ -125,6 +125,9 @@ fn text(notice: &Notice) -> Wording {
         Notice::WithoutClasses(path) => of_file(path, "no classes, all points are used"),
         Notice::LayerRead { path, format, records } => layer_read(path, format, *records),
         Notice::PointsRead(path, count) => of_file(path, &format!("{count} points read")),
+        Notice::NodesRead { path, read, nodes } => {
+            of_file(path, &format!("{read} of {nodes} nodes of the octree are read"))
+        }
         Notice::OfTask { text, .. } => text.clone(),
         Notice::Reader(path, text) => wording![format!("{}: ", path.display()), text.clone()],
         Notice::Skipped { why, hole, others } => skipped(why, hole.as_ref(), others).into(),
@@ -305,10 +308,10 @@ fn no_point_of_class(classes: &[u8], unread: usize) -> String {
     match unread {
         0 => format!("no point has class {classes}"),
         1 => format!(
-            "no point that was read has class {classes}; 1 file outside of the bounds was not"
+            "no point that was read has class {classes}; outside of the bounds, 1 file was not"
         ),
         files => format!(
-            "no point that was read has class {classes}; {files} files outside of the bounds were not"
+            "no point that was read has class {classes}; outside of the bounds, {files} files were not"
         ),
     }
 }

@@ -52,11 +52,13 @@ pub(super) fn options_of(
     // Whoever adds an option has to name it here.
     let TinRequest {
         points,
-        read: points::Options {
-            columns,
-            cut,
-            detail,
-        },
+        read:
+            points::Options {
+                columns,
+                cut,
+                detail,
+                resolution,
+            },
         classes,
         returns,
         breaklines,
@@ -73,6 +75,7 @@ pub(super) fn options_of(
     } = request;
     options.put(INPUTS, points);
     options.add(&[Setting::Columns, Setting::Parse], &(columns, detail));
+    options.add(&[Setting::CopcResolution], resolution);
     options.add(&[Setting::Partial], cut);
     options.add(&[Setting::Class], classes);
     options.add(&[Setting::Return], returns);

@@ -18,6 +18,7 @@ use crate::run::context::{Context, Journal, Size, Stage};
 use crate::run::lines::layers::{self, Layers};
 use crate::run::request::input::{Input, is_read_once, named};
 use crate::run::sources::file_extent::stated_extent;
+use crate::run::sources::narrowed::{Share, narrow};
 use crate::run::sources::open;
 use crate::run::sources::point_files::{ASK_EVERY, FILES_KEPT_OPEN};
 use crate::run::sources::systems::{self, Stated, SystemOptions, Systems};
@@ -65,8 +66,8 @@ pub enum Withheld {
 /// Counts of the points that were written and of those that were left out.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PointsReport {
-    /// Points read. Files are not read that state, in the coordinates of the bounds, that all of
-    /// their points lie outside of these.
+    /// Points read. Files, and nodes of octrees, are not read that state, in the coordinates of the
+    /// bounds, that all of their points lie outside of these.
     pub read: u64,
     /// The number of files that were not read.
     pub left_out: usize,
@@ -268,7 +269,7 @@ impl Pass<'_> {
             let mut source = sources[file].take().map_or_else(|| open(path), Ok)?;
             sink.next_source(info).map_err(|e| e.in_file(path))?;
             let number = self.numbers[file];
-            if is_outside(info, number, self.request.bounds.as_ref()) {
+            if self.is_outside(info, number, &mut *source, path)? {
                 report.left_out += 1;
                 continue;
             }
@@ -300,6 +301,22 @@ impl Pass<'_> {
         }
         work.end()?;
         Ok(report)
+    }
+
+    /// Returns true if a file that is not reprojected states that it is outside of the bounds. If
+    /// it states which part of it is not, its source is restricted to that.
+    fn is_outside(
+        &self,
+        info: &PointInfo,
+        transform: Option<usize>,
+        source: &mut (dyn PointSource + Send),
+        path: &Path,
+    ) -> Result<bool> {
+        match (&self.request.bounds, transform) {
+            (Some(bounds), None) => Ok(!stated_extent(info).meets(bounds)
+                || narrow(source, bounds, path, self.journal)? == Share::Nothing),
+            _ => Ok(false),
+        }
     }
 }
 
@@ -428,11 +445,6 @@ fn select(
     if keep.contains(&false) {
         batch.retain(&keep);
     }
-}
-
-/// Returns true if a file that is not reprojected states that it is outside of the bounds.
-fn is_outside(info: &PointInfo, transform: Option<usize>, bounds: Option<&Bounds>) -> bool {
-    transform.is_none() && bounds.is_some_and(|bounds| !stated_extent(info).meets(bounds))
 }
 
 fn is_within(bounds: &Bounds, p: [f64; 2]) -> bool {

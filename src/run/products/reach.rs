@@ -114,10 +114,10 @@ impl Reach {
     }
 
     /// Returns true if points outside of the bounds are not used.
-    pub(super) fn leaves_out(&self, points: &SelectionReport, files_left_out: usize) -> bool {
+    pub(super) fn leaves_out(&self, points: &SelectionReport, left_out: LeftOutFiles) -> bool {
         self.bounds.is_some()
             && self.buffer.is_finite()
-            && (points.outside > 0 || files_left_out > 0)
+            && (points.outside > 0 || left_out.unread() > 0)
     }
 
     /// Adds notices about the buffer, and about files that were left out.
@@ -133,7 +133,7 @@ impl Reach {
             return;
         }
         let buffer = self
-            .leaves_out(points, left_out.count)
+            .leaves_out(points, left_out)
             .then(|| units.length(self.buffer));
         if left_out.count > 0 {
             journal.add(Notice::FilesOutside {

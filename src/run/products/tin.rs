@@ -304,7 +304,7 @@ pub(crate) fn build(
     }
     let report = BuildReport {
         sources: request.points.len(),
-        is_part: reach.leaves_out(&points, left_out.count),
+        is_part: reach.leaves_out(&points, left_out),
         points,
         columns: files.columns(),
         lines: inputs,
@@ -616,7 +616,7 @@ fn note_classes(
         Classes::Only(classes) => {
             let is_missing = |class: &u8| !report.by_class.contains_key(class);
             let missing = classes.iter().copied().filter(is_missing);
-            journal.add_missing_classes(missing, left_out.count);
+            journal.add_missing_classes(missing, left_out.unread());
         }
         Classes::GroundOrAll if report.classes.is_some() => {
             journal.add(Notice::GroundUsed);

@@ -3,6 +3,7 @@
 pub(crate) mod checksum;
 pub(crate) mod extents;
 pub(crate) mod file_extent;
+pub(crate) mod narrowed;
 pub(crate) mod open;
 pub(crate) mod point_files;
 pub mod proj;

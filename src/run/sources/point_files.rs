@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::file_extent::{FileExtent, counted, stated_extent};
+use super::narrowed::{Share, narrow};
 use super::open;
 use super::systems::Stated;
 use super::transforms::{FileTransform, Transforms};
@@ -114,12 +115,22 @@ pub(crate) struct FilesRead {
     pub(crate) left_out: LeftOutFiles,
 }
 
-/// Files that are left out because they state that their points lie outside of the window.
+/// Files that are left out, in whole or in part, because they state that their points lie outside
+/// of the window.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LeftOutFiles {
     pub(crate) count: usize,
+    /// How many more are read only in part, by their index.
+    pub(crate) in_part: usize,
     /// True if they were read until one had a ground point.
     pub(crate) are_searched: bool,
+}
+
+impl LeftOutFiles {
+    /// Returns how many were not read to their end.
+    pub(crate) fn unread(self) -> usize {
+        self.count + self.in_part
+    }
 }
 
 /// The files of points of a run.
@@ -328,19 +339,32 @@ impl PointFiles {
             batch: PointBatch::default(),
             asked: 0,
         };
+        let mut in_part = Vec::new();
         for &i in &within {
             let file = &mut self.files[i];
             let source = file.source.take();
-            let source = source.map_or_else(|| file.reopen(self.options, &journal.context), Ok)?;
+            let mut source =
+                source.map_or_else(|| file.reopen(self.options, &journal.context), Ok)?;
             let path = file.input.path();
+            // Of a file that is reprojected, the window is not known in its own coordinates.
+            let share = match (&window, by_file[i]) {
+                (Some(window), None) => narrow(&mut *source, window, path, journal)?,
+                _ => Share::Whole,
+            };
             let extent = reading.read(path, source, by_file[i], &progress);
-            file.extent = extent.map_err(|e| e.in_file(path))?;
-            file.is_read = true;
+            let extent = extent.map_err(|e| e.in_file(path))?;
+            if share == Share::Whole {
+                file.extent = extent;
+                file.is_read = true;
+            } else {
+                in_part.push(i);
+            }
         }
         progress.end()?;
         let has_classes = |&i: &usize| self.files[i].has_classes;
-        let are_searched = selection.waits_for_ground() && left_out.iter().any(has_classes);
-        if are_searched && self.any_has_ground(&left_out, journal)? {
+        let unread: Vec<usize> = left_out.iter().chain(&in_part).copied().collect();
+        let are_searched = selection.waits_for_ground() && unread.iter().any(has_classes);
+        if are_searched && self.any_has_ground(&unread, journal)? {
             selection.note_ground();
         }
         if self.files.len() > 1 {
@@ -366,6 +390,7 @@ impl PointFiles {
                 .collect(),
             left_out: LeftOutFiles {
                 count: left_out.len(),
+                in_part: in_part.len(),
                 are_searched,
             },
         })

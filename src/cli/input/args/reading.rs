@@ -2,6 +2,7 @@
 
 use clap::Args;
 
+use super::parse::positive;
 use crate::data::Columns;
 use crate::io::OnDamage;
 use crate::io::points::Options;
@@ -33,6 +34,29 @@ pub(crate) struct ReadArgs {
     /// cannot be read.
     #[arg(long)]
     pub(crate) partial: bool,
+}
+
+/// Which levels of files with an octree are read.
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Points")]
+pub(crate) struct LevelArgs {
+    /// Read only the coarse levels of COPC files, until points are at most so far apart
+    ///
+    /// A COPC file has an even sample of its points on each level. Levels are read to the first one
+    /// on which points are at most LENGTH apart, as the file states. All inputs must be COPC.
+    /// Lengths are in the units of the file's coordinates.
+    #[arg(long, value_name = "LENGTH", value_parser = positive, allow_negative_numbers = true)]
+    pub(crate) copc_resolution: Option<f64>,
+}
+
+impl LevelArgs {
+    /// Returns options of reading with these levels.
+    pub(crate) fn of(&self, options: Options) -> Options {
+        Options {
+            resolution: self.copc_resolution,
+            ..options
+        }
+    }
 }
 
 impl ReadArgs {

@@ -5,7 +5,7 @@ use clap::{Args, ValueEnum};
 use super::parse::{
     ClassRange, Corners, ReturnRange, ThinRule, altitude, finite, positive, smallest_angle,
 };
-use super::reading::ReadArgs;
+use super::reading::{LevelArgs, ReadArgs};
 use super::surface::{OnCrossingArg, SurfaceArgs};
 use super::systems::SystemArgs;
 use super::tiles::TileArgs;
@@ -121,6 +121,9 @@ pub(crate) struct InfoArgs {
 
     #[command(flatten)]
     pub(crate) read: ReadArgs,
+
+    #[command(flatten)]
+    pub(crate) levels: LevelArgs,
 }
 
 /// Select, clip and merge points, with all their attributes
@@ -179,6 +182,9 @@ pub(crate) struct PointsArgs {
     pub(crate) drop_withheld: bool,
 
     /// Clip to a rectangle, including its border
+    ///
+    /// Files that state that they lie outside are not read; of COPC files, only the nodes that meet
+    /// the rectangle.
     #[arg(
         long,
         value_name = "XMIN,YMIN,XMAX,YMAX",
@@ -233,6 +239,9 @@ pub(crate) struct PointsArgs {
 
     #[command(flatten)]
     pub(crate) read: ReadArgs,
+
+    #[command(flatten)]
+    pub(crate) levels: LevelArgs,
 }
 
 /// Which point of a cell is kept.

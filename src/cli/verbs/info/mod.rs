@@ -26,7 +26,7 @@ use crate::run::{self, Facts};
 pub(crate) fn run(args: &InfoArgs, console: &Console) -> Result<Exit> {
     let mut files = inputs::expand(&args.files, console)?;
     drop_parts(&mut files, console);
-    let options = args.read.options();
+    let options = args.levels.of(args.read.options());
     let mut exit = Exit::Done;
     let mut objects = Vec::new();
     for (i, path) in files.iter().enumerate() {

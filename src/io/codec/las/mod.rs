@@ -1,7 +1,9 @@
 //! LAS and LAZ: lidar points.
 //!
 //! Reads LAS 1.0 to 1.4, and files that claim to be 1.5; point formats 0 to 10, uncompressed or
-//! compressed by LASzip; COPC as the LAZ file that it is, with all of its points.
+//! compressed by LASzip. COPC is read as the LAZ file that it is, with all of its points, or the
+//! nodes of its octree that meet a window, see
+//! [`PointSource::narrow`](crate::data::PointSource::narrow).
 //!
 //! Headers, records and coordinate systems are read by this module, in two steps: from bytes to
 //! fields (`raw`, without checks), and from fields to checked values (`header`). The `laz` crate
@@ -28,6 +30,7 @@
 //! | LAZ: file cut | error; with [`OnDamage::Accept`](crate::io::OnDamage) points up to the cut (formats 6 to 10: whole chunks), and a warning |
 //! | LAZ: more points than so few bytes can hold | error |
 //! | LAZ: a chunk does not end where it should | error that names its points; the chunks before it are good |
+//! | COPC: octree damaged, or not that of the chunks | error if nodes are chosen by it; with [`OnDamage::Accept`](crate::io::OnDamage) all points, and a warning |
 
 mod extra;
 mod head;

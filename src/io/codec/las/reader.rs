@@ -7,7 +7,7 @@ use super::laz::Laz;
 use super::plain::Plain;
 use super::raw::MAX_HEADER;
 use super::{head, records, reference};
-use crate::data::{Lattice, PointBatch, PointInfo, PointSource};
+use crate::data::{Bounds, Lattice, PartRead, PointBatch, PointInfo, PointSource};
 use crate::error::{Error, Result, Wording};
 use crate::io::options::las::{Detail, ReadOptions};
 
@@ -49,13 +49,7 @@ impl LasReader {
         let points = match header.is_compressed {
             false => Points::Plain(Plain::new(input, &header, options, &mut warnings)?),
             true => {
-                let laz = Laz::new(
-                    input,
-                    &header,
-                    payloads.laszip.as_deref(),
-                    options,
-                    &mut warnings,
-                )?;
+                let laz = Laz::new(input, &header, payloads, options, &mut warnings)?;
                 Points::Compressed(Box::new(laz))
             }
         };
@@ -113,6 +107,26 @@ impl PointSource for LasReader {
             Points::Compressed(laz) => laz.thin(spacing),
             Points::Done => true,
         }
+    }
+
+    fn narrow(&mut self, window: &Bounds) -> Result<Option<PartRead>> {
+        let narrowed = match &mut self.points {
+            Points::Compressed(laz) => laz.narrow(window, &mut self.warnings),
+            Points::Plain(_) | Points::Done => Ok(None),
+        };
+        narrowed.map_err(|error| error.in_file(&self.name))
+    }
+
+    fn coarsen(&mut self, spacing: f64) -> Result<Option<PartRead>> {
+        let coarsened = match &mut self.points {
+            Points::Compressed(laz) => laz.coarsen(spacing, &mut self.warnings),
+            Points::Plain(_) | Points::Done => Ok(None),
+        };
+        let part = coarsened.map_err(|error| error.in_file(&self.name))?;
+        if let Some(part) = part {
+            self.info.count = Some(part.points);
+        }
+        Ok(part)
     }
 
     fn warnings(&self) -> &[Wording] {

@@ -25,6 +25,8 @@ pub(super) struct Payloads {
     pub(super) geo_directory: Option<Vec<u8>>,
     pub(super) geo_doubles: Option<Vec<u8>>,
     pub(super) geo_ascii: Option<Vec<u8>>,
+    /// `copc`, 1.
+    pub(super) copc: Option<Vec<u8>>,
 }
 
 impl Payloads {
@@ -36,6 +38,7 @@ impl Payloads {
             ("LASF_Projection", 34735) => &mut self.geo_directory,
             ("LASF_Projection", 34736) => &mut self.geo_doubles,
             ("LASF_Projection", 34737) => &mut self.geo_ascii,
+            ("copc", 1) => &mut self.copc,
             _ => return None,
         };
         slot.is_none().then_some(slot)

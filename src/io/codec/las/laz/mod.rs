@@ -8,6 +8,7 @@
 mod ahead;
 mod chunk;
 mod compression;
+mod octree;
 mod stream;
 mod table;
 
@@ -16,13 +17,16 @@ use std::sync::Arc;
 
 use self::ahead::Ahead;
 use self::compression::{ChunkSize, Compression, Order};
+use self::octree::Octree;
 use self::stream::Stream;
 use self::table::Chunk;
 use super::header::Header;
 use super::input::Input;
 use super::record::RecordLayout;
-use crate::data::PointBatch;
+use super::records::Payloads;
+use crate::data::{Bounds, PartRead, PointBatch};
 use crate::error::{Error, Result, Wording};
+use crate::io::OnDamage;
 use crate::io::options::las::ReadOptions;
 
 /// Chunks decoded ahead, per thread.
@@ -56,11 +60,11 @@ impl Laz {
     pub(super) fn new(
         mut input: Input,
         header: &Header,
-        payload: Option<&[u8]>,
+        payloads: Payloads,
         options: ReadOptions,
         warnings: &mut Vec<Wording>,
     ) -> Result<Self> {
-        let compression = Compression::check(payload, header)?;
+        let compression = Compression::check(payloads.laszip.as_deref(), header)?;
         check_count(header)?;
         let is_streamed = match compression.chunks {
             ChunkSize::Whole => true,
@@ -127,10 +131,42 @@ impl Laz {
             layout: RecordLayout::new(header, options.detail),
             input,
             compression: Arc::new(compression),
+            index: payloads.copc.map_or(Index::None, Index::Unread),
+            scale: header.scale,
+            cut: options.cut,
             waiting: chunks.into(),
             decoding: VecDeque::new(),
             spare: Vec::new(),
         }))
+    }
+
+    /// See [`PointSource::narrow`](crate::data::PointSource::narrow).
+    pub(super) fn narrow(
+        &mut self,
+        window: &Bounds,
+        warnings: &mut Vec<Wording>,
+    ) -> Result<Option<PartRead>> {
+        match self {
+            Laz::Chunks(chunks) => chunks.restrict(warnings, |octree| {
+                Ok(|chunk: &Chunk| octree.meets(chunk, window))
+            }),
+            Laz::Stream(_) => Ok(None),
+        }
+    }
+
+    /// See [`PointSource::coarsen`](crate::data::PointSource::coarsen).
+    pub(super) fn coarsen(
+        &mut self,
+        spacing: f64,
+        warnings: &mut Vec<Wording>,
+    ) -> Result<Option<PartRead>> {
+        match self {
+            Laz::Chunks(chunks) => chunks.restrict(warnings, |octree| {
+                let deepest = octree.level_of(spacing)?;
+                Ok(move |chunk: &Chunk| octree.level(chunk) <= deepest)
+            }),
+            Laz::Stream(_) => Ok(None),
+        }
     }
 
     pub(super) fn thin(&mut self, spacing: u64) -> bool {
@@ -176,6 +212,10 @@ pub(super) struct Chunks {
     input: Input,
     compression: Arc<Compression>,
     layout: RecordLayout,
+    index: Index,
+    /// The step of coordinates.
+    scale: [f64; 3],
+    cut: OnDamage,
     waiting: VecDeque<Chunk>,
     /// The next chunks in order, each with the number of its points.
     decoding: VecDeque<(u64, Ahead<Result<PointBatch>>)>,
@@ -183,7 +223,48 @@ pub(super) struct Chunks {
     spare: Vec<PointBatch>,
 }
 
+/// Where the chunks of a file are in the plane.
+#[derive(Debug)]
+enum Index {
+    /// It is not known.
+    None,
+    /// An octree is described by this record.
+    Unread(Vec<u8>),
+    Read(Arc<Octree>),
+}
+
 impl Chunks {
+    /// Leaves out chunks by the octree, if there is one. It is read at the first call, which comes
+    /// before a chunk is decoded or left out.
+    fn restrict<'a, Keep: Fn(&Chunk) -> bool>(
+        &'a mut self,
+        warnings: &mut Vec<Wording>,
+        keep: impl FnOnce(&'a Octree) -> Result<Keep>,
+    ) -> Result<Option<PartRead>> {
+        if let Index::Unread(info) = &self.index {
+            let chunks = self.waiting.make_contiguous();
+            self.index = match Octree::read(&mut self.input, info, self.scale, chunks) {
+                Ok(octree) => Index::Read(Arc::new(octree)),
+                Err(error) if self.cut == OnDamage::Accept => {
+                    warnings.push(format!("{error}; all points are read").into());
+                    Index::None
+                }
+                Err(error) => return Err(error),
+            };
+        }
+        let Index::Read(octree) = &self.index else {
+            return Ok(None);
+        };
+        let keep = keep(octree)?;
+        let of = self.waiting.len();
+        self.waiting.retain(keep);
+        Ok(Some(PartRead {
+            parts: self.waiting.len(),
+            of,
+            points: self.waiting.iter().map(|chunk| chunk.points).sum(),
+        }))
+    }
+
     fn read(&mut self, batch: &mut PointBatch) -> Result<()> {
         self.decode_ahead();
         if let Some((_, decoded)) = self.decoding.pop_front() {
@@ -216,11 +297,17 @@ impl Chunks {
             Err(error) => return Ahead::known(Err(error.into())),
         };
         let (compression, layout) = (Arc::clone(&self.compression), self.layout);
+        let octree = match &self.index {
+            Index::Read(octree) => Some(Arc::clone(octree)),
+            Index::None | Index::Unread(_) => None,
+        };
         let mut batch = self.spare.pop().unwrap_or_default();
         Ahead::start(move || {
             batch.clear();
             match chunk::decode(&bytes, chunk.points, &compression, layout, &mut batch) {
-                Ok(()) => Ok(batch),
+                Ok(()) => octree
+                    .map_or(Ok(()), |octree| octree.check(&chunk, &batch))
+                    .map(|()| batch),
                 Err(reason) => Err(damaged(&chunk, &reason)),
             }
         })
