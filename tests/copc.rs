@@ -184,12 +184,6 @@ fn a_hundredth_of_the_area_takes_less_than_a_twentieth_of_the_bytes() {
     let around = 64 + 16 * file.nodes.len() + 375 + 2 * 8192;
     let read = met().map(|node| node.bytes).sum::<usize>() + index + around;
     let share = read as f64 / file.bytes.len() as f64;
-    println!(
-        "{read} of {} bytes, {} of {} nodes",
-        file.bytes.len(),
-        part.parts,
-        part.of
-    );
     assert!(share < 0.05, "{read} of {} bytes", file.bytes.len());
 }
 
@@ -339,7 +333,8 @@ fn what_is_wrong_with_an_index_is_named() {
     let (page, _) = file.pages[0];
     let last = file.bytes.len() as u64;
     let node = file.nodes.iter().find(|node| node.level == 1).unwrap();
-    let cases: [(&dyn Fn(&mut Vec<u8>), &str); 9] = [
+    type Change<'a> = &'a dyn Fn(&mut Vec<u8>);
+    let cases: [(Change<'_>, &str); 9] = [
         (
             &|b| entry(b, page, [0, 1, 0, 0], 0, 0, 0),
             "there is no node 0-1-0-0 in an octree",
