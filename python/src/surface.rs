@@ -573,8 +573,14 @@ pub(crate) fn write_to(
 
 /// Returns an error if a file exists, or one that is written with it.
 pub(crate) fn require_free(file: &Path) -> Result<()> {
-    let extension = formats::of_name(file).map_or("", |format| format.extensions[0]);
-    let beside = formats::of_name(file).map_or(&[][..], |format| format.beside);
+    // A name may be that of several formats.
+    let written = [Product::Heights, Product::Surface, Product::Lines];
+    let mut written = written
+        .iter()
+        .filter_map(|&product| formats::for_output(file, product));
+    let format = formats::of_name(file).or_else(|| written.next());
+    let extension = format.map_or("", |format| format.extensions[0]);
+    let beside = format.map_or(&[][..], |format| format.beside);
     let files = formats::with_companions(file, extension, beside);
     files
         .iter()

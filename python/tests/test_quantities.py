@@ -51,7 +51,7 @@ def test_slopes_of_faces(valley, tmp_path):
     for verb in ("slope", "aspect"):
         made = getattr(breakline, verb)(valley, resolution=2, formula="faces")
         made.write(tmp_path / "own.tif", overwrite=True)
-        program(verb, tmp_path / "v.tin", "--resolution", 2, "--formula", "faces", "-o", tmp_path / f"{verb}.tif")
+        program(verb, tmp_path / "v.tin", "--resolution", "2", "--formula", "faces", "-o", tmp_path / f"{verb}.tif")
         assert (tmp_path / "own.tif").read_bytes() == (tmp_path / f"{verb}.tif").read_bytes()
     with pytest.raises(breakline.UsageError, match="a raster has none"):
         breakline.slope(valley.dem(2), formula="faces")

@@ -84,7 +84,7 @@ fn neither_order_nor_threads_show_in_the_bytes() {
             threads,
         ];
         let outputs = ["-o", "c.geojson", "--overwrite"];
-        run_in(&folder, &[&words[..], &labels, &outputs].concat()).works(&["promise     0.2"]);
+        run_in(&folder, &[&words[..], &labels, &outputs].concat()).works(&["deviation   0.2"]);
         (bytes(&folder, "c.geojson"), bytes(&folder, "l.geojson"))
     };
     assert!(make("a.xyz", "1") == make("b.xyz", "2"));
@@ -95,7 +95,7 @@ fn bands_are_polygons_with_both_heights() {
     let folder = folder_with(&[("hills.xyz", &hills())]);
     for (more, promise) in [
         (&[][..], "bands "),
-        (&["--preset", "cartographic"][..], "promise "),
+        (&["--preset", "cartographic"][..], "deviation "),
     ] {
         let words = [
             "contour",

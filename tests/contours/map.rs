@@ -1,10 +1,10 @@
 //! Contours for maps: on surfaces where heights are often equal to levels, and on random ones.
 
 use super::map_judge::{check_crossings, check_polygon, deviation, doubled_area, is_inside, meet};
-use breakline::data::{ContourLine, Surface};
+use breakline::data::{ContourLine, Mesh, Surface};
 use breakline::terrain::{
-    Band, ContourLabel, LabelRules, LabelTops, Levels, Locator, MapContours, MapRules, Tin,
-    TinBuilder, contour_labels, contours, map_contours,
+    Band, ContourLabel, LabelRules, LabelTops, Levels, Locator, MapContours, MapLine, MapRules,
+    Tin, TinBuilder, contour_labels, contours, map_contours,
 };
 use testkit::random::Random;
 
@@ -230,6 +230,50 @@ fn lines_are_a_function_of_the_surface() {
         let again = one.install(|| map_contours(&tin, &levels(case), &rules).unwrap());
         assert_eq!(expected, again);
     });
+}
+
+/// Two hills joined by a narrow neck: the short lines across it are on the side of one hill.
+#[test]
+fn a_short_line_takes_no_longer_one_along() {
+    let (mut vertices, mut faces) = (Vec::new(), Vec::new());
+    for x in 0..=60_i32 {
+        for y in 0..=20_i32 {
+            let to = |middle: i32| f64::from((x - middle).pow(2) + (y - 10).pow(2)).sqrt();
+            let height = 12.25 - 0.5 * to(10).min(to(50) + 3.0);
+            vertices.push([f64::from(x), f64::from(y), height]);
+        }
+    }
+    for x in 0..60_u32 {
+        for y in 0..20_u32 {
+            if !(20..40).contains(&x) || (9..11).contains(&y) {
+                let [a, b] = [x * 21 + y, (x + 1) * 21 + y];
+                faces.extend([[a, b, b + 1], [a, b + 1, a + 1]]);
+            }
+        }
+    }
+    let mesh = Mesh::new(vertices, faces, &[], None).unwrap();
+    let levels = Levels::every(1.0, 0.0).unwrap();
+    let lines = |min_length| {
+        let rules = MapRules {
+            min_length,
+            ..MapRules::default()
+        };
+        let found = map_contours(&mesh, &levels, &rules).unwrap();
+        let length = |line: &MapLine| -> f64 {
+            let sides = line.line.points.windows(2);
+            sides
+                .map(|p| (p[0][0] - p[1][0]).hypot(p[0][1] - p[1][1]))
+                .sum()
+        };
+        found.lines.iter().map(length).collect::<Vec<f64>>()
+    };
+    let all = lines(1e-9);
+    let is_long = |length: &&f64| **length >= 10.0;
+    assert!(all.iter().any(|length| *length < 4.0));
+    let long = all.iter().filter(is_long).count();
+    let found = lines(10.0);
+    assert!(long > 10 && found.len() < all.len());
+    assert_eq!(found.iter().filter(is_long).count(), long);
 }
 
 #[test]

@@ -196,7 +196,10 @@ impl Monitor for Shown<'_> {
 
 /// Prints what was written of contours for a map, and what is promised of them.
 fn print_map(map: &MapSummary, crs: Option<&Crs>, console: &Console) {
-    print_contours(&map.drawn, crs, console);
+    let is_drawn = map.drawn.lines > 0 || map.left_out == 0;
+    if is_drawn && map.bands.is_none() {
+        print_contours(&map.drawn, crs, console);
+    }
     if map.left_out > 0 {
         let left_out = counted(map.left_out as u64, "line");
         console.line(format_args!(
@@ -206,7 +209,7 @@ fn print_map(map: &MapSummary, crs: Option<&Crs>, console: &Console) {
     if let Some(deviation) = map.deviation {
         let deviation = Units::of(crs).height(deviation);
         console.line(format_args!(
-            "promise     {deviation} off the surface at most, no crossings"
+            "deviation   {deviation} off the surface at most, no crossings"
         ));
     }
     if let Some(bands) = map.bands {

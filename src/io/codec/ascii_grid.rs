@@ -162,11 +162,9 @@ impl AsciiGrid {
                 .ok_or_else(|| {
                     Error::format(format!("'{}' is not a height", shown(word))).at(line_of(at))
                 })?;
-            values.push(if value == self.nodata {
-                f64::NAN
-            } else {
-                value
-            });
+            // Other programs write the least number of 32 bits with more or fewer digits.
+            let is_nodata = value == self.nodata || value as f32 == self.nodata as f32;
+            values.push(if is_nodata { f64::NAN } else { value });
             at += word.len();
             if values.len().is_multiple_of(width) {
                 watch(width as u64)?;

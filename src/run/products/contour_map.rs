@@ -65,6 +65,7 @@ pub fn contour_map(
     context.check()?;
     let levels = options.to_levels()?;
     let map = &options.map;
+    map.check()?;
     let rules = map.to_rules(&levels);
     rules.check(&levels)?;
     let exact = MapRules {
@@ -82,8 +83,10 @@ pub fn contour_map(
     let contours = surface.with_faces(context, |faces| {
         let finding = context.start(Stage::FindingContours, Size::Uncounted)?;
         let polled = Watched::polled(faces, context)?;
-        let found = terrain::map_contours(&polled, &levels, &rules)?;
+        let found = terrain::map_contours(&polled, &levels, &rules);
+        // A run that was canceled ends the surface early, which may look like an error.
         polled.end()?;
+        let found = found?;
         finding.end()?;
         Ok(found)
     })?;

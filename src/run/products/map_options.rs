@@ -1,5 +1,6 @@
 //! How contours become those of a map.
 
+use crate::error::{Error, Result};
 use crate::terrain::{LabelTops, Levels, MapRules};
 
 /// How contours become those of a map. The default leaves them exact.
@@ -73,6 +74,24 @@ impl MapOptions {
             min_length: self.min_length.unwrap_or(from.min_length),
             keep_depressions: self.keep_depressions,
             with_bands: self.bands,
+        }
+    }
+
+    /// Returns an error if an option has a value that makes no sense.
+    ///
+    /// # Errors
+    /// If index contours are every 0 intervals, or labels have no height.
+    pub(crate) fn check(&self) -> Result<()> {
+        if self.index_every == Some(0) {
+            return Err(
+                Error::usage("index contours every 0 levels").cure("mark every fifth, for example")
+            );
+        }
+        match self.label_height {
+            Some(height) if !(height.is_finite() && height > 0.0) => Err(Error::usage(format!(
+                "the height of labels is {height}, expected a positive number"
+            ))),
+            _ => Ok(()),
         }
     }
 

@@ -25,6 +25,7 @@ impl Verb for ContourOptions {
 
     fn check(&self) -> Result<()> {
         let levels = self.to_levels()?;
+        self.map.check()?;
         self.map.to_rules(&levels).check(&levels)
     }
 

@@ -88,14 +88,15 @@ pub(crate) struct MapArgs {
     #[arg(long, value_name = "LENGTH", value_parser = positive, allow_negative_numbers = true)]
     pub(crate) simplify: Option<f64>,
 
-    /// Leave out shorter lines, with what they enclose
+    /// Leave out shorter lines, with what they enclose, unless a longer line is there
     #[arg(long, value_name = "LENGTH", value_parser = not_negative, allow_negative_numbers = true)]
     pub(crate) min_length: Option<f64>,
 
     /// Leave out lines that enclose less, or cut off less at the rim
     ///
-    /// Also those that enclose a tenth of the interval in height at most. A line with a fifth of
-    /// the area stays where the ground within rises or falls by an interval.
+    /// Also those that enclose a tenth of the interval in height at most, unless they enclose 20
+    /// times the area. A line with a fifth of the area stays where the ground within rises or falls
+    /// by an interval.
     #[arg(long, value_name = "AREA", value_parser = not_negative, allow_negative_numbers = true)]
     pub(crate) min_area: Option<f64>,
 
@@ -108,6 +109,8 @@ pub(crate) struct MapArgs {
     pub(crate) index_every: Option<u32>,
 
     /// Write the areas between the lines, as polygons with ELEV_MIN and ELEV_MAX
+    ///
+    /// Instead of the lines, which have no field INDEX then.
     #[arg(long)]
     pub(crate) bands: bool,
 

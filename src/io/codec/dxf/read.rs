@@ -125,7 +125,7 @@ impl<'a> Pairs<'a> {
 struct Entity {
     kind: String,
     layer: String,
-    /// Corners 0 and 1 of a line, or the position of a vertex.
+    /// Corners 0 and 1 of a line, or the position of a vertex; NaN for what is not stated.
     at: [[f64; 3]; 2],
     /// The vertices of an LWPOLYLINE.
     vertices: Vec<[f64; 3]>,
@@ -135,6 +135,8 @@ struct Entity {
     arcs: usize,
     /// The third number of the direction that is up for the entity.
     up: f64,
+    /// Whether it is on a sheet, not in the map.
+    is_on_paper: bool,
     line: usize,
 }
 
@@ -210,6 +212,8 @@ impl<'a> Drawing<'a> {
                 .chars()
                 .take(40)
                 .collect(),
+            at: [[f64::NAN; 3]; 2],
+            elevation: f64::NAN,
             up: 1.0,
             line: pair.line,
             ..Entity::default()
@@ -223,7 +227,7 @@ impl<'a> Drawing<'a> {
         let is_light = entity.kind == "LWPOLYLINE";
         match pair.code {
             8 => entity.layer = String::from_utf8_lossy(pair.value).into_owned(),
-            10 if is_light => entity.vertices.push([pair.number()?, 0.0, 0.0]),
+            10 if is_light => entity.vertices.push([pair.number()?, f64::NAN, f64::NAN]),
             20 if is_light => {
                 let y = pair.number()?;
                 if let Some(last) = entity.vertices.last_mut() {
@@ -241,6 +245,7 @@ impl<'a> Drawing<'a> {
             70 if is_light || matches!(entity.kind.as_str(), "VERTEX" | "POLYLINE") => {
                 entity.flags = pair.flags()?;
             }
+            67 => entity.is_on_paper = pair.flags()? == 1,
             230 => entity.up = pair.number()?,
             _ => (),
         }
@@ -263,7 +268,7 @@ impl<'a> Drawing<'a> {
             }
             ("SEQEND", Some(_)) => {
                 if let Some((polyline, vertices)) = self.polyline.take() {
-                    self.line(&polyline, vertices);
+                    self.line(&polyline, vertices)?;
                 }
             }
             (kind, Some(_)) => {
@@ -286,14 +291,15 @@ impl<'a> Drawing<'a> {
             ("LWPOLYLINE", None) => {
                 let height = |[x, y, _]: &[f64; 3]| [*x, *y, entity.elevation];
                 let vertices = entity.vertices.iter().map(height).collect();
-                self.line(&entity, vertices);
+                self.line(&entity, vertices)?;
             }
             ("LINE", None) => {
                 let ends = entity.at.to_vec();
-                self.line(&entity, ends);
+                self.line(&entity, ends)?;
             }
             ("POINT", None) => {
                 if self.is_wanted(&entity) {
+                    require_stated(&entity.at[..1], &entity)?;
                     self.shapes.push(Shape::Points(vec![entity.at[0]]));
                 }
             }
@@ -307,10 +313,11 @@ impl<'a> Drawing<'a> {
     }
 
     /// Adds a line, unless another layer is wanted.
-    fn line(&mut self, entity: &Entity, mut vertices: Vec<[f64; 3]>) {
+    fn line(&mut self, entity: &Entity, mut vertices: Vec<[f64; 3]>) -> Result<()> {
         if entity.kind.is_empty() || !self.is_wanted(entity) {
-            return;
+            return Ok(());
         }
+        require_stated(&vertices, entity)?;
         if entity.flags & CLOSED != 0 && entity.kind != "LINE" {
             vertices.extend(vertices.first().copied());
         }
@@ -318,6 +325,7 @@ impl<'a> Drawing<'a> {
         if vertices.len() > 1 {
             self.shapes.push(Shape::Lines(vec![vertices]));
         }
+        Ok(())
     }
 
     /// Returns true if an entity is in the layer that is read, and lies in the axes of the drawing.
@@ -325,8 +333,10 @@ impl<'a> Drawing<'a> {
         let is_upright = entity.up == 1.0 || entity.kind == "LINE" || entity.kind == "POINT";
         if !is_upright {
             self.count(entity, "entity in tilted axes");
+        } else if entity.is_on_paper {
+            self.count(entity, "entity on paper");
         }
-        self.is_in_layer(entity) && is_upright
+        self.is_in_layer(entity) && is_upright && !entity.is_on_paper
     }
 
     fn is_in_layer(&mut self, entity: &Entity) -> bool {
@@ -354,6 +364,14 @@ impl<'a> Drawing<'a> {
                 .at("ENTITIES")
                 .cure(format!("name one of {}", names.join(", "))));
         }
+        if let (Some(faces), None) = (self.others.get("3DFACE"), self.wanted) {
+            return Err(Error::unsupported(format!(
+                "the drawing holds a surface of {faces} faces (3DFACE), which is not read"
+            ))
+            .cure(
+                "name the layer of its lines, as in FILE:LAYER, or save the surface as LandXML",
+            ));
+        }
         let mut warnings: Vec<Wording> = Vec::new();
         if !self.others.is_empty() {
             let others = self
@@ -373,5 +391,18 @@ impl<'a> Drawing<'a> {
             warnings,
             ..Layer::default()
         })
+    }
+}
+
+/// Returns an error if a vertex has no x or no y. One without a height has none: it is not at 0.
+fn require_stated(vertices: &[[f64; 3]], entity: &Entity) -> Result<()> {
+    let is_stated = |[x, y, _]: &[f64; 3]| !x.is_nan() && !y.is_nan();
+    match vertices.iter().all(is_stated) {
+        true => Ok(()),
+        false => Err(
+            Error::format(format!("the entity '{}' lacks an x or a y", entity.kind))
+                .at(format!("line {}", entity.line))
+                .cure("get the whole file, or save the drawing again"),
+        ),
     }
 }

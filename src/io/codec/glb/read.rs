@@ -167,6 +167,12 @@ impl Array<'_> {
     }
 }
 
+/// The bytes of a position.
+const POSITION_BYTES: usize = 12;
+
+/// How often nodes may show all positions of a file.
+const MOST_COPIES: usize = 16;
+
 struct File<'a> {
     json: &'a Value,
     data: &'a [u8],
@@ -211,8 +217,14 @@ impl<'a> File<'a> {
         }
         let positions = self.array(&primitive["attributes"]["POSITION"], "VEC3", &[FLOAT])?;
         let first = triangles.vertices.len();
-        if first + positions.count >= u32::MAX as usize {
-            return Err(Error::limit("too many vertices"));
+        // Many nodes may show one array: a small file must not become a large mesh.
+        let most = MOST_COPIES.saturating_mul(self.data.len() / POSITION_BYTES);
+        if first + positions.count > most.min(u32::MAX as usize - 1) {
+            let error = format!(
+                "its nodes show more than {most} vertices, {MOST_COPIES} times what {} bytes hold",
+                self.data.len()
+            );
+            return Err(Error::limit(error).cure("write one mesh, without copies"));
         }
         let [ox, oy, oz] = from;
         let local = |[x, up, south]: [f64; 3]| [ox + x, oy - south, oz + up];

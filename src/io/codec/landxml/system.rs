@@ -88,10 +88,14 @@ impl Stated {
                 "LOCAL_CS[\"LandXML\",UNIT[\"{name}\",{factor:?}]]"
             ))
         };
-        match self.linear.filter(|unit| !unit.is_same(&Unit::metre())) {
-            Some(unit) => local(unit).map(|crs| (Some(crs), warning)),
-            None => Ok((None, warning)),
+        let plan = self.linear.unwrap_or_else(Unit::metre);
+        let heights = self.elevation.filter(|heights| !heights.is_same(&plan));
+        if plan.is_same(&Unit::metre()) && heights.is_none() {
+            return Ok((None, warning));
         }
+        let mut crs = local(plan)?;
+        crs.vertical_unit = heights;
+        Ok((Some(crs), warning))
     }
 
     fn require_unit_of(&self, crs: &Crs) -> Result<()> {

@@ -112,7 +112,8 @@ fn system(file: &Classic, heights: &Variable) -> Result<Option<Crs>> {
     let wkt = variable.text("crs_wkt").or(variable.text("wkt"));
     let crs = match (wkt, variable.number("epsg")) {
         (Some(wkt), _) if !wkt.is_empty() => Crs::from_wkt(wkt),
-        (_, Some(code)) => Crs::from_user(&format!("EPSG:{code}")),
+        // Others write 0 where none is known.
+        (_, Some(code)) if code != 0.0 => Crs::from_user(&format!("EPSG:{code}")),
         _ => return Ok(None),
     };
     crs.map(Some)

@@ -67,6 +67,9 @@ use crate::terrain::walk::{At, Locator};
 /// The radius of the smoothing of heights, in intervals.
 const RADIUS: f64 = 8.0;
 
+/// That radius at most, in mean distances of vertices: the time grows with its square.
+const LARGEST_RADIUS: f64 = 10.0;
+
 /// The largest move of a point in a pass, in intervals.
 const LARGEST_MOVE: f64 = 1.5;
 
@@ -123,7 +126,8 @@ pub fn map_contours(
     let mut heights = match rules.smooth {
         Some(_) => {
             let tube = Tube {
-                radius: RADIUS * scale.interval,
+                radius: (RADIUS * scale.interval)
+                    .min(LARGEST_RADIUS * range.spacing(surface.vertex_count())),
                 largest: scale.tube,
             };
             smoothed(surface, tube)
@@ -183,8 +187,11 @@ pub fn map_contours(
         lengths[line] = length(&drawn.points);
     }
     if rules.min_length > 0.0 {
-        remove_where(&mut nests, &small, |line, _| {
-            lengths[line] < rules.min_length
+        let has_longer = nests.sides_with(|line| lengths[line] >= rules.min_length);
+        remove_where(&mut nests, &small, |line, side| {
+            // A short line across a neck has half of the surface on its small side.
+            let is_alone = has_longer[line].is_some_and(|longer| !longer[side.number()]);
+            lengths[line] < rules.min_length && is_alone
         });
     }
     let mut found: Vec<MapLine> = kept
@@ -366,6 +373,12 @@ impl Range {
             }
         }
         range
+    }
+
+    /// Returns the mean distance of this many vertices, if they fill the box.
+    fn spacing(&self, vertices: usize) -> f64 {
+        let size = |axis: usize| self.high[axis] - self.low[axis];
+        (size(0) * size(1) / vertices as f64).sqrt()
     }
 
     /// Returns the largest coordinate in plan, without its sign.

@@ -133,6 +133,27 @@ impl Nests {
         (0..).zip(&self.lines).map(sides_of).collect()
     }
 
+    /// Returns for the left and the right of each line whether a line is there that is wanted, was
+    /// not removed, and is not this line; `None` as in [`sides`](Self::sides).
+    pub(super) fn sides_with(&self, is_wanted: impl Fn(usize) -> bool) -> Vec<Option<[bool; 2]>> {
+        let mut counts = vec![Extent::NOTHING; self.starts.len() - 1];
+        for (line, sides) in self.lines.iter().enumerate() {
+            if !self.is_removed[line] && is_wanted(line) {
+                for &region in sides.iter().flatten() {
+                    counts[region as usize].area += 1;
+                }
+            }
+        }
+        let sides = self.sides(&counts).into_iter().enumerate();
+        sides
+            .map(|(line, counts)| {
+                // A line that is wanted counts on both of its sides.
+                let own = i128::from(!self.is_removed[line] && is_wanted(line));
+                Some(counts?.map(|count| count.area > own))
+            })
+            .collect()
+    }
+
     /// Removes a line, with all that are on one side of it.
     ///
     /// # Complexity
@@ -283,6 +304,11 @@ pub(super) fn small_side(sides: [Extent; 2], turns_left: Option<bool>) -> SmallS
 }
 
 impl SmallSide {
+    /// Returns 0 for the left side of the line, 1 for the right.
+    pub(super) fn number(self) -> usize {
+        self.side
+    }
+
     /// Removes the line, with all lines on this side.
     pub(super) fn remove(self, line: usize, nests: &mut Nests) {
         nests.remove(line, self.side);

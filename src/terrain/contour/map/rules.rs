@@ -18,7 +18,8 @@ pub struct MapRules {
     /// Lines that enclose less, or cut off less at the rim, are left out; those that enclose a
     /// fifth are kept where the ground within rises or falls by an interval.
     pub min_area: f64,
-    /// Lines that are shorter, once they are smoothed, are left out with what they enclose.
+    /// Lines that are shorter, once they are smoothed, are left out with what they enclose, unless
+    /// a longer one is there.
     pub min_length: f64,
     /// Keeps depressions, whatever they enclose, unless a line around them is left out.
     pub keep_depressions: bool,
@@ -37,6 +38,9 @@ const LEAST_RELIEF: f64 = 0.1;
 
 /// The share of the least area that suffices where a line encloses the relief of an interval.
 const SMALL_AREA: f64 = 0.2;
+
+/// How many times the least area a line encloses that is kept without any relief.
+const LARGE_AREA: f64 = 20.0;
 
 impl MapRules {
     /// Returns the rules of a printed map with this interval: lines within half of the interval,
@@ -61,7 +65,9 @@ impl MapRules {
     pub(super) fn keeps(&self, area: f64, relief: f64) -> bool {
         let is_large = area >= self.min_area && relief >= LEAST_RELIEF;
         let is_steep = area >= SMALL_AREA * self.min_area && relief >= 1.0;
-        self.min_area <= 0.0 || is_large || is_steep
+        // A level pad, a dam or a lake.
+        let is_vast = area >= LARGE_AREA * self.min_area;
+        self.min_area <= 0.0 || is_large || is_steep || is_vast
     }
 
     /// Returns an error unless the rules make sense for some levels.
@@ -83,6 +89,12 @@ impl MapRules {
             return Err(Error::usage(format!(
                 "a length or area of the rules for contours is {value}, expected 0 or more"
             )));
+        }
+        if self.smooth == Some(0.0) {
+            return Err(Error::usage(
+                "smoothed lines may be off the surface by 0, expected a positive number",
+            )
+            .cure("leave out smoothing"));
         }
         match self.smooth {
             Some(smooth) if smooth > 0.5 * interval => Err(Error::usage(format!(
@@ -121,8 +133,8 @@ const ROUNDING: f64 = 1e-6;
 impl Scale {
     pub(super) fn of(rules: &MapRules, levels: &Levels) -> Self {
         let interval = levels.interval();
-        let delta = 1e-4 * interval;
         let whole = rules.smooth.unwrap_or(0.5 * interval);
+        let delta = (1e-4 * interval).min(whole / 8.0);
         let usable = (whole * (1.0 - ROUNDING) - 2.0 * delta).max(0.0);
         let corridor = match rules.smooth {
             Some(_) => SHARE * usable,
