@@ -54,7 +54,9 @@ fn a_damaged_file_is_an_error_that_names_file_and_place() {
         ("glb", |path| mesh::read_triangles(path).map(drop)),
         ("nc", |path| mesh::read_triangles(path).map(drop)),
         ("2dm", |path| mesh::read_triangles(path).map(drop)),
-        ("dxf", |path| layer::read(path.to_str().unwrap()).map(drop)),
+        ("dxf", |path| {
+            layer::read(&format!("{}:BOUNDARY", path.display())).map(drop)
+        }),
         ("asc", |path| {
             let grid = ascii_grid::open(path)?;
             grid.read_grid_with(&|_| Ok(())).map(drop)

@@ -368,6 +368,7 @@ impl<'a> Drawing<'a> {
             return Err(Error::unsupported(format!(
                 "the drawing holds a surface of {faces} faces (3DFACE), which is not read"
             ))
+            .at("ENTITIES")
             .cure(
                 "name the layer of its lines, as in FILE:LAYER, or save the surface as LandXML",
             ));
