@@ -48,7 +48,9 @@ WRITTEN = {
 OF_RESULTS = {
     "check": {"overwrite"},
     "volume": {"output", "overwrite"},
-    "compare": {"output", "overwrite"},
+    "compare": {"output", "overwrite", "overviews"},
+    # Colors never have overviews.
+    "color_relief": {"overviews"},
     "sample": {"output", "overwrite"},
     "accuracy": {"output", "overwrite", "histogram"},
     # `breakline.simplify` takes what `tin` takes, and returns a Tin.

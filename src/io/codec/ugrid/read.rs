@@ -37,7 +37,15 @@ pub(crate) fn read(bytes: &[u8], watch: Watch) -> Result<Triangles> {
     };
     let [x, y] = [file.variable(x)?, file.variable(y)?];
     let heights = heights(&file, [x, y])?;
-    let [xs, ys, zs] = [file.values(x)?, file.values(y)?, file.values(heights)?];
+    let [xs, ys, mut zs] = [
+        measured(&file, x)?,
+        measured(&file, y)?,
+        measured(&file, heights)?,
+    ];
+    // Depths, as models of the sea have them.
+    if heights.text("positive") == Some("down") {
+        zs.iter_mut().for_each(|z| *z = -*z);
+    }
     if xs.len() != ys.len() {
         let counts = format!("{} and {} coordinates", xs.len(), ys.len());
         return Err(Error::format(counts).at(format!("variable {}", y.name)));
@@ -56,6 +64,32 @@ pub(crate) fn read(bytes: &[u8], watch: Watch) -> Result<Triangles> {
         crs: system(&file, heights)?,
         ..Triangles::default()
     })
+}
+
+/// Returns the values of a variable, unpacked.
+///
+/// # Errors
+/// If they are not within the file, or some are missing.
+fn measured(file: &Classic, variable: &Variable) -> Result<Vec<f64>> {
+    let mut values = file.values(variable)?;
+    let fill = variable.number("_FillValue");
+    if let Some(fill) = fill.or(variable.number("missing_value")) {
+        let missing = values.iter().filter(|&&value| value == fill).count();
+        if missing > 0 {
+            let count = values.len();
+            return Err(
+                Error::format(format!("{missing} of {count} values are missing ({fill})"))
+                    .at(format!("variable {}", variable.name))
+                    .cure("give each node of the mesh a value"),
+            );
+        }
+    }
+    let stated = |name: &str, default: f64| variable.number(name).unwrap_or(default);
+    let (scale, offset) = (stated("scale_factor", 1.0), stated("add_offset", 0.0));
+    if (scale, offset) != (1.0, 0.0) {
+        values.iter_mut().for_each(|v| *v = *v * scale + offset);
+    }
+    Ok(values)
 }
 
 /// Returns the variable with the heights of nodes.
