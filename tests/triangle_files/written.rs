@@ -517,7 +517,7 @@ fn nothing_is_replaced_unasked() {
         .ends(1, &["error: a.node: the file exists", "--overwrite"]);
     run(&folder, "triangulate box.poly -o box.ele")
         .ends(2, &["box.poly: the output is one of the inputs"]);
-    run(&folder, "triangulate box.poly -o b.dxf").ends(
+    run(&folder, "triangulate box.poly -o b.dwg").ends(
         2,
         &["not a format that can be written", ".ele, .node, .poly"],
     );
