@@ -46,18 +46,18 @@ pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<Exit> {
         areas: areas(args, &outputs)?,
         names: [named(0), named(1)],
     };
-    let context = console.context();
     let surfaces = pair::read(
         &plans,
         ["surface", "minus"],
         &args.surface,
-        (options.method, &args.memory),
+        options.method,
+        &args.memory,
         console,
-        &context,
     )?;
     let [first, second] = &surfaces[..] else {
         return Err(pair::no_surface());
     };
+    let context = console.context();
     let product = run::compare([first, second], &options, &context)?;
     for target in &outputs.targets {
         let file = target.within(&outputs.set);

@@ -8,7 +8,7 @@ use crate::cli::report::console::Console;
 use crate::cli::report::summary::print_surface;
 use crate::crs::Crs;
 use crate::error::{Error, Result};
-use crate::run::{self, Context, Source, SurfaceProduct, SurfaceReport};
+use crate::run::{self, Source, SurfaceProduct, SurfaceReport};
 use crate::terrain::Method;
 
 /// Returns the files that are read for surfaces.
@@ -45,22 +45,20 @@ pub(super) fn read(
     plans: &[SurfacePlan],
     roles: impl IntoIterator<Item = &'static str>,
     args: &SurfaceArgs,
-    (method, memory): (Method, &MemoryArgs),
+    method: Method,
+    memory: &MemoryArgs,
     console: &Console,
-    context: &Context,
 ) -> Result<Vec<SurfaceProduct>> {
+    let context = console.context();
     let is_built = |plan: &SurfacePlan| matches!(plan.request.source, Source::Points(_));
     let built = plans.iter().filter(|plan| is_built(plan)).count() as u64;
-    let memory_of = |plan: &SurfacePlan| match built {
-        0 => memory.memory,
-        _ => memory
-            .memory
-            .filter(|_| is_built(plan))
-            .map(|all| all / built),
+    let memory_of = |plan: &SurfacePlan| {
+        let given = memory.memory.filter(|_| built == 0 || is_built(plan));
+        given.map(|all| all / built.max(1))
     };
     let named = roles.into_iter().zip(&args.inputs);
     let each = plans.iter().zip(named).map(|(plan, (role, input))| {
-        let mut product = run::open_surface(&plan.request, method, memory_of(plan), context)?;
+        let mut product = run::open_surface(&plan.request, method, memory_of(plan), &context)?;
         console.line(format_args!("{role:<11} {}", input.display()));
         print_surface(&SurfaceReport::take(&mut product)?, console);
         Ok(product)

@@ -32,10 +32,14 @@ pub(crate) fn run(args: &ProfileArgs, console: &Console) -> Result<Exit> {
                 .cure("leave one of them out"),
         );
     }
-    let context = console.context();
-    let roles = std::iter::repeat("surface");
-    let how = (Method::Linear, &args.memory);
-    let surfaces = pair::read(&plans, roles, &args.surface, how, console, &context)?;
+    let surfaces = pair::read(
+        &plans,
+        std::iter::repeat("surface"),
+        &args.surface,
+        Method::Linear,
+        &args.memory,
+        console,
+    )?;
     let options = ProfileOptions {
         along: Input::File(args.along.clone()),
         assign: plans.first().and_then(pair::assigned),
@@ -43,7 +47,8 @@ pub(crate) fn run(args: &ProfileArgs, console: &Console) -> Result<Exit> {
         sections,
         names: args.surface.inputs.clone(),
     };
-    let product = run::profile(&surfaces.iter().collect::<Vec<_>>(), &options, &context)?;
+    let surfaces: Vec<_> = surfaces.iter().collect();
+    let product = run::profile(&surfaces, &options, &console.context())?;
     let plot = PlotOptions {
         exaggeration: args.exaggeration,
         datum: args.datum,

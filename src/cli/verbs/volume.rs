@@ -23,14 +23,13 @@ pub(crate) fn run(args: &VolumeArgs, console: &Console) -> Result<Exit> {
     let read: Vec<PathBuf> = pair::files(&plans).chain(args.within.clone()).collect();
     let output = pair::output(&args.output, args.overwrite);
     let outputs = outputs::resolve(&output, TABLES, &read)?;
-    let context = console.context();
     let surfaces = pair::read(
         &plans,
         ["surface", "base"],
         &args.surface,
-        (Method::Linear, &args.memory),
+        Method::Linear,
+        &args.memory,
         console,
-        &context,
     )?;
     let base = match &surfaces[..] {
         [_, base] => VolumeBase::Surface(base),
@@ -52,7 +51,7 @@ pub(crate) fn run(args: &VolumeArgs, console: &Console) -> Result<Exit> {
     let Some(surface) = surfaces.first() else {
         return Err(pair::no_surface());
     };
-    let product = run::volume(surface, base, &options, &context)?;
+    let product = run::volume(surface, base, &options, &console.context())?;
     for target in &outputs.targets {
         add_table(&target.path, &outputs.set, |out| {
             out.write_all(volumes::csv(&product).as_bytes())
