@@ -49,8 +49,6 @@ OF_RESULTS = {
     "check": {"overwrite"},
     "volume": {"output", "overwrite"},
     "compare": {"output", "overwrite", "overviews"},
-    # Colors never have overviews.
-    "color_relief": {"overviews"},
     "sample": {"output", "overwrite"},
     "accuracy": {"output", "overwrite", "histogram"},
     # `breakline.simplify` takes what `tin` takes, and returns a Tin.

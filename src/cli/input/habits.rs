@@ -366,6 +366,8 @@ impl Translation<'_> {
             Creation => {
                 let value = self.value();
                 match value.eq_ignore_ascii_case("OVERVIEWS=NONE") {
+                    // Colors never have overviews.
+                    true if self.verb == "color-relief" => {}
                     true => self
                         .ours
                         .extend(["--overviews", "none"].map(OsString::from)),

@@ -123,7 +123,7 @@ impl SurfacePlan {
     }
 }
 
-/// Returns the frame of a raster.
+/// Returns the frame of a raster, with the usual overviews.
 ///
 /// # Errors
 /// If the raster to align to does not exist.
@@ -134,7 +134,7 @@ pub(crate) fn frame(args: &FrameArgs) -> Result<FrameOptions> {
         resolution: args.resolution,
         extent,
         align_to: args.align_to.clone(),
-        overviews: args.overviews.into(),
+        ..FrameOptions::default()
     })
 }
 

@@ -40,7 +40,7 @@ pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<Exit> {
     let outputs = outputs::resolve(&output, &formats(), &read)?;
     let named = |i: usize| args.surface.inputs.get(i).cloned().unwrap_or_default();
     let options = CompareOptions {
-        frame: frame(&args.frame)?,
+        frame: args.overviews.of(frame(&args.frame)?),
         method: args.method.into(),
         worst: args.worst,
         areas: areas(args, &outputs)?,

@@ -9,8 +9,8 @@ use crate::run::{DemOptions, WriteRequest};
 pub(super) fn asked(args: &DemArgs, console: &Console) -> Result<Asked> {
     let plan = SurfacePlan::resolve(&args.surface, console)?;
     let options = DemOptions {
-        frame: frame(&args.frame)?,
-        method: args.method.into(),
+        frame: args.overviews.of(frame(&args.cells.frame)?),
+        method: args.cells.method.into(),
     };
     let targets = plan.targets(&args.output);
     Ok(Asked {

@@ -15,8 +15,8 @@ pub(super) fn asked(args: &HillshadeArgs, console: &Console) -> Result<Asked> {
         z_factor: args.z_factor,
     };
     let options = HillshadeOptions {
-        frame: frame(&args.frame)?,
-        method: args.method.into(),
+        frame: args.overviews.of(frame(&args.cells.frame)?),
+        method: args.cells.method.into(),
         light,
     };
     let targets = plan.targets(&args.output);

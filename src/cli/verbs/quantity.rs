@@ -59,7 +59,7 @@ fn asked(
     let plan = SurfacePlan::resolve(&args.surface, console)?;
     let options = QuantityOptions {
         quantity,
-        frame: frame(&args.cells.frame)?,
+        frame: args.overviews.of(frame(&args.cells.frame)?),
         method: args.cells.method.into(),
         z_factor,
     };

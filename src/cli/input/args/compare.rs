@@ -5,7 +5,7 @@ use clap::Args;
 use super::parse::{not_negative, positive};
 use super::surface::SurfaceArgs;
 use super::tiles::MemoryArgs;
-use super::verbs::{FrameArgs, MethodArg};
+use super::verbs::{FrameArgs, MethodArg, OverviewArgs};
 use crate::run::CompareOptions;
 
 /// Difference of two surfaces: in numbers, in cells, and where it is largest
@@ -72,6 +72,9 @@ pub(crate) struct CompareArgs {
 
     #[command(flatten)]
     pub(crate) frame: FrameArgs,
+
+    #[command(flatten)]
+    pub(crate) overviews: OverviewArgs,
 
     #[command(flatten)]
     pub(crate) surface: SurfaceArgs,

@@ -5,7 +5,7 @@ use clap::{Args, ValueEnum};
 use super::parse::positive;
 use super::surface::SurfaceArgs;
 use super::tiles::TileArgs;
-use super::verbs::{CellArgs, OutputArgs};
+use super::verbs::{CellArgs, OutputArgs, OverviewArgs};
 use crate::terrain::{Gradient, Ruggedness};
 
 /// What all of them have.
@@ -17,6 +17,8 @@ pub(crate) struct QuantityArgs {
     pub(crate) output: OutputArgs,
     #[command(flatten)]
     pub(crate) cells: CellArgs,
+    #[command(flatten)]
+    pub(crate) overviews: OverviewArgs,
     #[command(flatten)]
     pub(crate) tiles: TileArgs,
 }

@@ -10,7 +10,7 @@ use super::surface::{OnCrossingArg, SurfaceArgs};
 use super::systems::SystemArgs;
 use super::tiles::TileArgs;
 use crate::io::geotiff::Overviews;
-use crate::run::{Alpha, Arithmetic};
+use crate::run::{Alpha, Arithmetic, FrameOptions};
 use crate::terrain::{CellPoint, Method, Shading};
 
 /// The files to write.
@@ -54,13 +54,27 @@ pub(crate) struct FrameArgs {
     /// `--te`.
     #[arg(long, value_name = "RASTER", conflicts_with = "resolution")]
     pub(crate) align_to: Option<PathBuf>,
+}
 
+/// The overviews of a raster.
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Raster")]
+pub(crate) struct OverviewArgs {
     /// Smaller images in a GeoTIFF, from which programs draw it at once
     ///
-    /// Without them a large raster is written sooner, and is a quarter smaller. Colors never have
-    /// them.
+    /// Without them a large raster is written sooner, and is a quarter smaller.
     #[arg(long, value_enum, value_name = "WHICH", default_value_t)]
     pub(crate) overviews: OverviewsArg,
+}
+
+impl OverviewArgs {
+    /// Returns the options of a frame with these overviews.
+    pub(crate) fn of(&self, frame: FrameOptions) -> FrameOptions {
+        FrameOptions {
+            overviews: self.overviews.into(),
+            ..frame
+        }
+    }
 }
 
 /// Which overviews a raster has.
@@ -90,7 +104,9 @@ pub(crate) struct CellArgs {
 
     /// How heights between the vertices are computed
     ///
-    /// For a TIN; a DEM has its heights.
+    /// `linear` has kinks at all edges; `natural` is smooth except at vertices and breaklines, and
+    /// stays between the heights of its neighbors; `smooth` has kinks at breaklines only, and may
+    /// overshoot.
     #[arg(
         long,
         value_enum,
@@ -538,21 +554,9 @@ pub(crate) struct DemArgs {
     #[command(flatten)]
     pub(crate) output: OutputArgs,
     #[command(flatten)]
-    pub(crate) frame: FrameArgs,
-
-    /// How heights between the vertices are computed
-    ///
-    /// `linear` has kinks at all edges; `natural` is smooth except at vertices and breaklines, and
-    /// stays between the heights of its neighbors; `smooth` has kinks at breaklines only, and may
-    /// overshoot.
-    #[arg(
-        long,
-        value_enum,
-        value_name = "METHOD",
-        default_value_t,
-        help_heading = "Raster"
-    )]
-    pub(crate) method: MethodArg,
+    pub(crate) cells: CellArgs,
+    #[command(flatten)]
+    pub(crate) overviews: OverviewArgs,
 
     #[command(flatten)]
     pub(crate) tiles: TileArgs,
@@ -607,21 +611,9 @@ pub(crate) struct HillshadeArgs {
     #[command(flatten)]
     pub(crate) output: OutputArgs,
     #[command(flatten)]
-    pub(crate) frame: FrameArgs,
-
-    /// How heights between the vertices are computed
-    ///
-    /// `linear` has kinks at all edges; `natural` is smooth except at vertices and breaklines, and
-    /// stays between the heights of its neighbors; `smooth` has kinks at breaklines only, and may
-    /// overshoot. For a TIN; a DEM has its heights.
-    #[arg(
-        long,
-        value_enum,
-        value_name = "METHOD",
-        default_value_t,
-        help_heading = "Raster"
-    )]
-    pub(crate) method: MethodArg,
+    pub(crate) cells: CellArgs,
+    #[command(flatten)]
+    pub(crate) overviews: OverviewArgs,
 
     /// How shades follow from slopes
     ///
