@@ -6,7 +6,7 @@ use std::sync::Arc;
 use breakline::crs::Crs;
 use breakline::data::{ContourLine, EdgeKind, Frame, Grid, Surface as _};
 use breakline::io::formats::{Content, Product};
-use breakline::io::geotiff::{CellFormat, Overviews};
+use breakline::io::geotiff::CellFormat;
 use breakline::io::{Destination, formats, mapped, mesh};
 use breakline::run::{
     self, CellProduct, Context, ContourOptions, DemOptions, Heights, HillshadeOptions, Model,
@@ -457,7 +457,7 @@ impl Surface {
             let cells = run::color_relief(product, &options, context)?;
             match format.content {
                 Content::Picture => cells.write_picture(target, context),
-                _ => cells.write_with(target, Overviews::None, context).map(drop),
+                _ => cells.write(target, context).map(drop),
             }
         })
     }
@@ -654,11 +654,11 @@ pub(crate) fn write_cells(
         .into());
     }
     write_to(py, &file, overwrite, &call, |target, context| {
-        let cells = CellProduct::of_grid(&grid, format);
+        let cells = CellProduct::of_grid(&grid, format).with_overviews(overviews);
         if is_picture {
             cells.write_picture(target, context)
         } else {
-            cells.write_with(target, overviews, context).map(drop)
+            cells.write(target, context).map(drop)
         }
     })
 }

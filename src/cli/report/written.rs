@@ -196,6 +196,7 @@ impl Monitor for Shown<'_> {
 
 /// Prints what was written of contours for a map, and what is promised of them.
 fn print_map(map: &MapSummary, crs: Option<&Crs>, console: &Console) {
+    // If all lines were left out, contours do cross the surface.
     let is_drawn = map.drawn.lines > 0 || map.left_out == 0;
     if is_drawn && map.bands.is_none() {
         print_contours(&map.drawn, crs, console);

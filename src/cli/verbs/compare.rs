@@ -63,11 +63,10 @@ pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<Exit> {
         let file = target.within(&outputs.set);
         match (target.kind, &product.areas) {
             (Written::Areas, Some(areas)) => areas.write(file, &context)?,
-            _ => drop(
-                product
-                    .cells()
-                    .write_with(file, options.frame.overviews, &context)?,
-            ),
+            _ => {
+                let cells = product.cells().with_overviews(options.frame.overviews);
+                cells.write(file, &context)?;
+            }
         }
     }
     commit(outputs, console)?;

@@ -139,6 +139,8 @@ pub struct CellProduct<'a> {
     /// cells of a raster.
     surface: Option<&'a dyn Surface>,
     content: Content,
+    /// The overviews of a GeoTIFF.
+    overviews: Overviews,
     /// What was assumed and what looks wrong, in the order in which it was found.
     pub notices: Vec<Notice>,
 }
@@ -177,12 +179,8 @@ pub fn dem<'a>(
 ) -> Result<CellProduct<'a>> {
     let journal = Journal::new(context);
     let (source, surface) = heights(product, &options.frame, options.method, &journal)?;
-    Ok(CellProduct {
-        source,
-        surface,
-        content: Content::Heights,
-        notices: journal.take(),
-    })
+    let cells = CellProduct::new(source, Content::Heights, journal.take());
+    Ok(cells.with_overviews(options.frame.overviews).over(surface))
 }
 
 /// Prepares a hillshade: whole numbers from 1 (dark) to 255 (bright), and NaN in cells without a
@@ -202,7 +200,7 @@ pub fn hillshade<'a>(
     let journal = Journal::new(context);
     let (source, surface) = given_or_drawn(product, &options.frame, options.method, &journal)?;
     let shades = CellProduct::shades_of(source, &options.light, product.crs(), &journal)?;
-    Ok(shades.over(surface))
+    Ok(shades.with_overviews(options.frame.overviews).over(surface))
 }
 
 /// Prepares a quantity in cells, such as the slope; NaN where there is none.
@@ -402,14 +400,19 @@ fn light_over(
 }
 
 impl<'a> CellProduct<'a> {
-    /// Heights that were drawn already.
-    pub(crate) fn heights_of(source: Box<dyn BlockSource + 'a>) -> Self {
+    fn new(source: Box<dyn BlockSource + 'a>, content: Content, notices: Vec<Notice>) -> Self {
         CellProduct {
             source,
             surface: None,
-            content: Content::Heights,
-            notices: Vec::new(),
+            content,
+            overviews: Overviews::default(),
+            notices,
         }
+    }
+
+    /// Heights that were drawn already.
+    pub(crate) fn heights_of(source: Box<dyn BlockSource + 'a>) -> Self {
+        CellProduct::new(source, Content::Heights, Vec::new())
     }
 
     /// Returns the hillshade of heights in cells.
@@ -426,12 +429,7 @@ impl<'a> CellProduct<'a> {
         options.check()?;
         let light = light_over(options, crs, &source.frame(), journal);
         let source = Box::new(Hillshade::new(source, light)?);
-        Ok(CellProduct {
-            source,
-            surface: None,
-            content: Content::Shades,
-            notices: journal.take(),
-        })
+        Ok(CellProduct::new(source, Content::Shades, journal.take()))
     }
 
     /// Returns a quantity of heights in cells.
@@ -446,7 +444,7 @@ impl<'a> CellProduct<'a> {
     ) -> Result<Self> {
         let [z_factor, x_scale] = scale_over(options, crs, &source.frame(), journal);
         let map = QuantityMap::of(source, options.quantity, z_factor, x_scale)?;
-        Ok(CellProduct::numbers(Box::new(map), journal))
+        Ok(CellProduct::numbers(Box::new(map), options, journal))
     }
 
     /// Returns the slope or the aspect of faces in cells.
@@ -461,45 +459,42 @@ impl<'a> CellProduct<'a> {
     ) -> Result<Self> {
         let [z_factor, x_scale] = scale_over(options, crs, &source.frame(), journal);
         let map = FaceSlopes::of(source, options.quantity, z_factor, x_scale)?;
-        Ok(CellProduct::numbers(Box::new(map), journal))
+        Ok(CellProduct::numbers(Box::new(map), options, journal))
     }
 
-    /// Returns numbers in cells.
-    fn numbers(source: Box<dyn BlockSource + 'a>, journal: &Journal) -> Self {
-        CellProduct {
-            source,
-            surface: None,
-            content: Content::Heights,
-            notices: journal.take(),
-        }
+    /// Returns the values of a quantity in cells.
+    fn numbers(
+        source: Box<dyn BlockSource + 'a>,
+        options: &QuantityOptions,
+        journal: &Journal,
+    ) -> Self {
+        CellProduct::new(source, Content::Heights, journal.take())
+            .with_overviews(options.frame.overviews)
     }
 
     /// Returns the cells of a grid that is in memory, to be written as `cells`.
     pub fn of_grid(grid: &'a Grid, cells: CellFormat) -> Self {
-        CellProduct {
-            source: Box::new(grid),
-            surface: None,
-            content: match cells {
-                CellFormat::Heights => Content::Heights,
-                CellFormat::Shades => Content::Shades,
-                CellFormat::Colors(colors) => Content::Colors(colors.clone()),
-            },
-            notices: Vec::new(),
-        }
+        let content = match cells {
+            CellFormat::Heights => Content::Heights,
+            CellFormat::Shades => Content::Shades,
+            CellFormat::Colors(colors) => Content::Colors(colors.clone()),
+        };
+        CellProduct::new(Box::new(grid), content, Vec::new())
     }
 
-    /// Returns heights in cells, to be written in these colors.
+    /// Returns heights in cells, to be written in these colors. Colors have no overviews.
     pub(super) fn colors(
         source: Box<dyn BlockSource + 'a>,
         colors: Colors,
         journal: &Journal,
     ) -> Self {
-        CellProduct {
-            source,
-            surface: None,
-            content: Content::Colors(colors),
-            notices: journal.take(),
-        }
+        CellProduct::new(source, Content::Colors(colors), journal.take())
+            .with_overviews(Overviews::None)
+    }
+
+    /// Returns the cells with these overviews where they are written to a GeoTIFF.
+    pub fn with_overviews(self, overviews: Overviews) -> Self {
+        CellProduct { overviews, ..self }
     }
 
     /// Returns the cells with the triangles that they are computed from.
@@ -516,6 +511,11 @@ fn text_writer(target: Destination) -> Option<WriteHeights> {
 }
 
 impl CellProduct<'_> {
+    /// Returns how many times the cells of a GeoTIFF are on the disk while it is written.
+    pub(crate) fn copies_on_disk(&self) -> f64 {
+        self.overviews.copies_on_disk()
+    }
+
     /// Returns about how many cells have a value; for a raster, the number of all cells.
     ///
     /// # Complexity
@@ -551,24 +551,11 @@ impl CellProduct<'_> {
     /// # Errors
     /// If the file cannot be written, or the run is canceled.
     pub fn write(&self, target: Destination, context: &Context) -> Result<RasterSummary> {
-        self.write_with(target, Overviews::Auto, context)
-    }
-
-    /// Like [`write`](Self::write), but with these overviews.
-    ///
-    /// # Errors
-    /// Those of [`write`](Self::write).
-    pub fn write_with(
-        &self,
-        target: Destination,
-        overviews: Overviews,
-        context: &Context,
-    ) -> Result<RasterSummary> {
         if let (Content::Heights, Some(write)) = (&self.content, text_writer(target)) {
             return write(target, &self.watched(context)?);
         }
         let options = WriteOptions {
-            overviews,
+            overviews: self.overviews,
             ..self.content.format().into()
         };
         let cells = geotiff::cells_written(self.frame(), &options);

@@ -1,6 +1,7 @@
 //! Contours of a surface for a map: lines, the areas between them, and labels.
 
 use super::contour::ContourOptions;
+use super::map_options::MapOptions;
 use super::surface::SurfaceProduct;
 use crate::crs::Crs;
 use crate::data::{Attributes, Layer, Shape, Value};
@@ -27,7 +28,7 @@ pub struct ContourMap {
     pub crs: Option<Crs>,
     /// What was assumed, in the order in which it was found.
     pub notices: Vec<Notice>,
-    index_step: Option<u32>,
+    options: MapOptions,
 }
 
 /// What was written of a map, counted.
@@ -38,8 +39,8 @@ pub struct MapSummary {
     pub drawn: ContourSummary,
     /// The number of lines that were left out.
     pub left_out: usize,
-    /// The largest difference between the height of a line and the surface along it; `None` if
-    /// lines are exact.
+    /// The largest difference between the height of a line and the surface along it, in the unit of
+    /// heights; `None` if lines are exact.
     pub deviation: Option<f64>,
     /// The number of areas, if they were asked for.
     pub bands: Option<usize>,
@@ -68,12 +69,12 @@ pub fn contour_map(
     map.check()?;
     let rules = map.to_rules(&levels);
     rules.check(&levels)?;
-    let exact = MapRules {
-        with_bands: rules.with_bands,
-        keep_depressions: rules.keep_depressions,
-        ..MapRules::default()
+    let lengths = MapRules {
+        with_bands: false,
+        keep_depressions: false,
+        ..rules
     };
-    if rules != exact || map.labels.is_some() {
+    if lengths != MapRules::default() || map.labels.is_some() {
         require_lengths(surface.crs())?;
     }
     options
@@ -106,7 +107,7 @@ pub fn contour_map(
         labels: labels.unwrap_or_default(),
         crs: surface.crs().cloned(),
         notices: journal.take(),
-        index_step,
+        options: *map,
     })
 }
 
@@ -163,6 +164,7 @@ impl ContourMap {
     /// lower ground inside, else 0) and, if index contours are marked, `INDEX` (1 or 0). Vertices
     /// have the height of their line.
     pub fn lines(&self) -> Layer {
+        let index_step = self.options.index_step();
         let record = |of: &MapLine| {
             let level = of.line.level;
             let points = of.line.points.iter().map(|&[x, y]| [x, y, level]).collect();
@@ -170,12 +172,12 @@ impl ContourMap {
                 Value::Number(level),
                 Value::Whole(i64::from(of.is_depression)),
             ];
-            let index = self.index_step.map(|step| is_index(of, step));
+            let index = index_step.map(|step| is_index(of, step));
             row.extend(index.map(|is_index| Value::Whole(i64::from(is_index))));
             (Shape::Lines(vec![points]), row)
         };
         let names = ["ELEV", "DEPRESSION", "INDEX"];
-        let names = &names[..if self.index_step.is_some() { 3 } else { 2 }];
+        let names = &names[..if index_step.is_some() { 3 } else { 2 }];
         layer(
             "contours",
             &self.crs,
@@ -209,20 +211,18 @@ impl ContourMap {
     }
 
     /// Returns the counts.
-    pub fn summary(&self, options: &ContourOptions) -> MapSummary {
+    pub fn summary(&self) -> MapSummary {
         let mut drawn = ContourSummary::default();
         for line in &self.contours.lines {
             drawn.add(&line.line);
         }
-        let moves = options.map.preset.is_some()
-            || options.map.smooth.is_some()
-            || options.map.simplify.is_some();
+        let options = &self.options;
         MapSummary {
             left_out: self.contours.traced - drawn.lines,
             drawn,
-            deviation: moves.then_some(self.contours.deviation),
-            bands: options.map.bands.then_some(self.contours.bands.len()),
-            labels: options.map.labels.map(|_| self.labels.len()),
+            deviation: options.moves_lines().then_some(self.contours.deviation),
+            bands: options.bands.then_some(self.contours.bands.len()),
+            labels: options.labels.map(|_| self.labels.len()),
         }
     }
 
@@ -231,16 +231,10 @@ impl ContourMap {
     ///
     /// # Errors
     /// If the format cannot be written, has no room for them, or the file cannot be written.
-    pub fn write(
-        &self,
-        options: &ContourOptions,
-        target: Destination,
-        context: &Context,
-    ) -> Result<()> {
-        let layer = if options.map.bands {
-            self.bands()
-        } else {
-            self.lines()
+    pub fn write(&self, target: Destination, context: &Context) -> Result<()> {
+        let layer = match self.options.bands {
+            true => self.bands(),
+            false => self.lines(),
         };
         layers::write(&layer, target, context)
     }
@@ -248,7 +242,7 @@ impl ContourMap {
     /// Writes the labels.
     ///
     /// # Errors
-    /// As [`write`](Self::write).
+    /// Those of [`write`](Self::write).
     pub fn write_labels(&self, target: Destination, context: &Context) -> Result<()> {
         layers::write(&self.labels(), target, context)
     }

@@ -56,6 +56,11 @@ impl MapOptions {
         *self != MapOptions::default()
     }
 
+    /// Returns true if lines are not exact: smoothed or simplified.
+    pub(super) fn moves_lines(&self) -> bool {
+        self.preset.is_some() || self.smooth.is_some() || self.simplify.is_some()
+    }
+
     /// Returns the rules for these levels.
     pub fn to_rules(&self, levels: &Levels) -> MapRules {
         let interval = levels.interval();

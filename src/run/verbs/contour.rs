@@ -103,12 +103,12 @@ fn write_map(
 ) -> Result<Summary> {
     let map = contour_map(surface, options, context)?;
     for target in &outputs.targets {
-        map.write(options, target.within(&outputs.set), context)?;
+        map.write(target.within(&outputs.set), context)?;
     }
     if let Some(target) = &outputs.labels {
         map.write_labels(target.within(&outputs.set), context)?;
     }
-    Ok(Summary::Map(map.summary(options)))
+    Ok(Summary::Map(map.summary()))
 }
 
 fn write_all(

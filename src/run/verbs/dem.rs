@@ -51,12 +51,7 @@ impl Verb for DemOptions {
         context: &Context,
     ) -> Result<Summary> {
         let cells = cells::dem(surface, self, context)?;
-        Ok(Summary::Heights(write_numbers(
-            &cells,
-            self.frame.overviews,
-            outputs,
-            context,
-        )?))
+        Ok(Summary::Heights(write_numbers(&cells, outputs, context)?))
     }
 
     fn keeps(&self) -> Keeps<'_> {
@@ -69,12 +64,8 @@ impl Verb for DemOptions {
         outputs: &Outputs,
         context: &Context,
     ) -> Result<Summary> {
-        let cells = CellProduct::heights_of(tiles.heights(&self.frame, context)?);
-        Ok(Summary::Heights(write_numbers(
-            &cells,
-            self.frame.overviews,
-            outputs,
-            context,
-        )?))
+        let heights = tiles.heights(&self.frame, context)?;
+        let cells = CellProduct::heights_of(heights).with_overviews(self.frame.overviews);
+        Ok(Summary::Heights(write_numbers(&cells, outputs, context)?))
     }
 }

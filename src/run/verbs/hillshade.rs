@@ -73,7 +73,7 @@ impl Verb for HillshadeOptions {
         context: &Context,
     ) -> Result<Summary> {
         let cells = cells::hillshade(surface, self, context)?;
-        write_drawn(&cells, self.frame.overviews, outputs, cell_bytes, context)
+        write_drawn(&cells, outputs, cell_bytes, context)
     }
 
     fn keeps(&self) -> Keeps<'_> {
@@ -89,8 +89,9 @@ impl Verb for HillshadeOptions {
         let heights = tiles.heights(&self.frame, context)?;
         let crs = heights.crs().cloned();
         let journal = Journal::new(context);
-        let cells = CellProduct::shades_of(heights, &self.light, crs.as_ref(), &journal)?;
-        write_drawn(&cells, self.frame.overviews, outputs, cell_bytes, context)
+        let cells = CellProduct::shades_of(heights, &self.light, crs.as_ref(), &journal)?
+            .with_overviews(self.frame.overviews);
+        write_drawn(&cells, outputs, cell_bytes, context)
     }
 }
 

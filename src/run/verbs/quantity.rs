@@ -70,7 +70,7 @@ impl Verb for QuantityOptions {
         context: &Context,
     ) -> Result<Summary> {
         let cells = cells::quantity(surface, self, context)?;
-        let written = write_numbers(&cells, self.frame.overviews, outputs, context)?;
+        let written = write_numbers(&cells, outputs, context)?;
         Ok(Summary::Quantity(self.quantity, written))
     }
 
@@ -97,7 +97,7 @@ impl Verb for QuantityOptions {
             let crs = heights.crs().cloned();
             CellProduct::quantity_of(heights, self, crs.as_ref(), &journal)?
         };
-        let written = write_numbers(&cells, self.frame.overviews, outputs, context)?;
+        let written = write_numbers(&cells, outputs, context)?;
         Ok(Summary::Quantity(self.quantity, written))
     }
 }

@@ -7,7 +7,7 @@ use super::targets::{Outputs, Target};
 use crate::data::BlockSource;
 use crate::error::{Error, Result, Setting, wording};
 use crate::io::formats::{self, Content, Product};
-use crate::io::geotiff::{Overviews, RasterSummary};
+use crate::io::geotiff::RasterSummary;
 use crate::run::context::Context;
 use crate::run::context::event::Event;
 use crate::run::context::notice::Notice;
@@ -48,14 +48,13 @@ pub(super) fn is_picture(target: &Target) -> bool {
 /// Those of [`announce`]; and if a file cannot be written, or the run is canceled.
 pub(super) fn write_drawn(
     cells: &CellProduct,
-    overviews: Overviews,
     outputs: &Outputs,
     cell_bytes: impl Fn(&Target) -> u64,
     context: &Context,
 ) -> Result<Summary> {
     let copies = |target: &Target| match is_picture(target) {
         true => 1.0,
-        false => overviews.copies_on_disk(),
+        false => cells.copies_on_disk(),
     };
     let on_disk = |target: &Target| (cell_bytes(target), copies(target));
     announce(cells, outputs, on_disk, context)?;
@@ -64,7 +63,7 @@ pub(super) fn write_drawn(
         if is_picture(target) {
             cells.write_picture(destination, context)?;
         } else {
-            cells.write_with(destination, overviews, context)?;
+            cells.write(destination, context)?;
         }
     }
     Ok(Summary::Shades)
@@ -77,18 +76,17 @@ pub(super) fn write_drawn(
 /// Those of [`announce`]; and if a file cannot be written, or the run is canceled.
 pub(super) fn write_numbers(
     cells: &CellProduct,
-    overviews: Overviews,
     outputs: &Outputs,
     context: &Context,
 ) -> Result<RasterSummary> {
-    announce(cells, outputs, |_| (4, overviews.copies_on_disk()), context)?;
+    announce(cells, outputs, |_| (4, cells.copies_on_disk()), context)?;
     let mut written = RasterSummary {
         min: f64::NAN,
         max: f64::NAN,
         valid: 0,
     };
     for target in &outputs.targets {
-        written = cells.write_with(target.within(&outputs.set), overviews, context)?;
+        written = cells.write(target.within(&outputs.set), context)?;
     }
     Ok(written)
 }

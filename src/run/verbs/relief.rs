@@ -9,7 +9,6 @@ use super::targets::{Outputs, Target};
 use super::{Keeps, Summary, Tiles, Verb};
 use crate::error::{Result, Setting};
 use crate::io::formats::Product;
-use crate::io::geotiff::Overviews;
 use crate::run::context::{Context, Journal};
 use crate::run::products::relief::{self, ColorReliefOptions};
 use crate::run::products::surface::{self, SurfaceProduct, SurfaceRequest};
@@ -63,7 +62,7 @@ impl Verb for ColorReliefOptions {
         context: &Context,
     ) -> Result<Summary> {
         let cells = relief::color_relief(surface, self, context)?;
-        write_drawn(&cells, Overviews::None, outputs, cell_bytes, context)
+        write_drawn(&cells, outputs, cell_bytes, context)
     }
 
     fn keeps(&self) -> Keeps<'_> {
@@ -78,7 +77,7 @@ impl Verb for ColorReliefOptions {
     ) -> Result<Summary> {
         let heights = tiles.heights(&self.frame, context)?;
         let cells = relief::colors_of(heights, self, &Journal::new(context))?;
-        write_drawn(&cells, Overviews::None, outputs, cell_bytes, context)
+        write_drawn(&cells, outputs, cell_bytes, context)
     }
 }
 
