@@ -16,12 +16,12 @@ use crate::io::Temporary;
 use crate::terrain::Method;
 
 /// Builds or reads a surface, for heights by a method. Points that would need more than `memory`
-/// bytes, half of the free memory if it is `None`, become a TIN in parts first, in tiles; it is
-/// used in its files, in a folder that is removed with the surface. All verbs have the same
-/// results of it, byte for byte.
+/// bytes, half of the free memory if it is `None`, become a TIN in parts first, in tiles. It is
+/// used in its files, in a folder that is removed with the surface. What verbs make of it is the
+/// same as of a surface in memory, byte for byte.
 ///
-/// The folder is in that which the environment names as `TMPDIR`, else in `/var/tmp`. It takes
-/// about 200 bytes for each point.
+/// The folder is created in the one that the environment names as `TMPDIR`, else in `/var/tmp`.
+/// It takes about 200 bytes for each point.
 ///
 /// # Errors
 /// Those of [`surface_for`] and [`write()`](super::write()), and if the folder cannot be created.

@@ -601,7 +601,7 @@ fn files_that_state_to_be_far_outside_of_the_bounds_are_not_read() {
     let classes = [&window[..], &["--class", "5,6"]].concat();
     tin(&all, &classes, "five.ply").works(&[
         left_out,
-        "no point that was read has class 6; outside of the bounds, 2 files were not",
+        "no point that was read has class 6; outside of the bounds, 2 files were not read",
     ]);
     write("far.las", [5000.0, 0.0], 2);
     // A header that was not filled in is not trusted, and one without area is not.

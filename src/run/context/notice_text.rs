@@ -308,10 +308,10 @@ fn no_point_of_class(classes: &[u8], unread: usize) -> String {
     match unread {
         0 => format!("no point has class {classes}"),
         1 => format!(
-            "no point that was read has class {classes}; outside of the bounds, 1 file was not"
+            "no point that was read has class {classes}; outside of the bounds, 1 file was not read"
         ),
         files => format!(
-            "no point that was read has class {classes}; outside of the bounds, {files} files were not"
+            "no point that was read has class {classes}; outside of the bounds, {files} files were not read"
         ),
     }
 }

@@ -124,7 +124,7 @@ pub(super) fn add_targets(options: &mut Options, targets: &Targets, tiles: &Tile
     listed.add(&[Setting::Overwrite], existing);
     listed.add(&[Setting::CrossingReport], crossings);
     listed.put(REPLACED, replaced);
-    // Jobs have none yet: those of today have the same list as those before.
+    // No job has labels: the lists of those that began without this option stay.
     if labels.is_some() {
         listed.add(&[Setting::LabelsOutput], labels);
     }

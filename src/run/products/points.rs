@@ -269,7 +269,7 @@ impl Pass<'_> {
             let mut source = sources[file].take().map_or_else(|| open(path), Ok)?;
             sink.next_source(info).map_err(|e| e.in_file(path))?;
             let number = self.numbers[file];
-            if self.is_outside(info, number, &mut *source, path)? {
+            if self.narrow(info, number, &mut *source, path)? == Share::Nothing {
                 report.left_out += 1;
                 continue;
             }
@@ -303,19 +303,19 @@ impl Pass<'_> {
         Ok(report)
     }
 
-    /// Returns true if a file that is not reprojected states that it is outside of the bounds. If
-    /// it states which part of it is not, its source is restricted to that.
-    fn is_outside(
+    /// Restricts the source of a file to the bounds, as far as the file states where its points
+    /// are, and returns how much of it is left: all of a file that is reprojected.
+    fn narrow(
         &self,
         info: &PointInfo,
         transform: Option<usize>,
         source: &mut (dyn PointSource + Send),
         path: &Path,
-    ) -> Result<bool> {
+    ) -> Result<Share> {
         match (&self.request.bounds, transform) {
-            (Some(bounds), None) => Ok(!stated_extent(info).meets(bounds)
-                || narrow(source, bounds, path, self.journal)? == Share::Nothing),
-            _ => Ok(false),
+            (Some(bounds), None) if !stated_extent(info).meets(bounds) => Ok(Share::Nothing),
+            (Some(bounds), None) => narrow(source, bounds, path, self.journal),
+            _ => Ok(Share::Whole),
         }
     }
 }

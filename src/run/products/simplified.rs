@@ -76,7 +76,7 @@ fn of_model(
     simplify_cells(&grid, rule, context.cancel)
 }
 
-/// Adds what to do to an error because parts do not fit into memory together.
+/// Adds a cure if the parts of a surface do not fit into memory together.
 #[cold]
 fn in_memory_only(error: Error) -> Error {
     match error.kind() {

@@ -39,7 +39,7 @@ impl Verb for ContourOptions {
         add(Setting::Interval, interval);
         add(Setting::Base, base);
         add(Setting::Levels, levels);
-        // Jobs draw exact lines: those of today have the same list as those before.
+        // Only exact lines are drawn in jobs: the lists of those that began without maps stay.
         if map.is_asked_for() {
             add(Setting::Preset, map);
         }
