@@ -134,9 +134,7 @@ def compare(
         With ``changed``: also find the areas in which the surfaces differ by more, exact on the triangles of both, and
         leave out those that are smaller than this; 0 keeps all.
     memory : int or str, optional
-        The memory for surfaces of points, such as ``"200MB"``; half of what is free by default. Files of points that need
-        more become a TIN in parts first, which is used in its files, with the same result if heights are linear. The files are
-        in the folder that the environment names as ``TMPDIR``, else in ``/var/tmp``, and are removed at the end.
+        As for :func:`sample`.
     threads, progress
         As for :func:`tin`.
     **surface

@@ -92,9 +92,7 @@ def profile(
     exaggeration, datum, title : optional
         Of plots: by how much heights are larger than distances, the height at which a plot begins, and a title.
     memory : int or str, optional
-        The memory for surfaces of points, such as ``"200MB"``; half of what is free by default. Files of points that need
-        more become a TIN in parts first, which is used in its files, with the same result if heights are linear. The files are
-        in the folder that the environment names as ``TMPDIR``, else in ``/var/tmp``, and are removed at the end.
+        As for :func:`sample`.
     threads, progress
         As for :func:`tin`.
     **surface
@@ -175,9 +173,7 @@ def drape(
     overwrite : bool
         Replace files that exist.
     memory : int or str, optional
-        The memory for surfaces of points, such as ``"200MB"``; half of what is free by default. Files of points that need
-        more become a TIN in parts first, which is used in its files, with the same result if heights are linear. The files are
-        in the folder that the environment names as ``TMPDIR``, else in ``/var/tmp``, and are removed at the end.
+        As for :func:`sample`.
     threads, progress
         As for :func:`tin`.
     **surface

@@ -48,8 +48,9 @@ def sample(
         How heights between the vertices are computed, as for :func:`dem`. Slopes need ``"linear"``.
     memory : int or str, optional
         The memory for surfaces of points, such as ``"200MB"``; half of what is free by default. Files of points that need
-        more become a TIN in parts first, which is used in its files, with the same result if heights are linear. The files are
-        in the folder that the environment names as ``TMPDIR``, else in ``/var/tmp``, and are removed at the end.
+        more become a TIN in parts first, which is used in its files, with the same result if heights are linear. The
+        files are in the folder that the environment names as ``TMPDIR``, else in ``/var/tmp``, and are removed at the
+        end.
     threads, progress
         As for :func:`tin`.
     **surface
@@ -191,9 +192,7 @@ def accuracy(
     method : str
         How heights between the vertices are computed, as for :func:`dem`.
     memory : int or str, optional
-        The memory for surfaces of points, such as ``"200MB"``; half of what is free by default. Files of points that need
-        more become a TIN in parts first, which is used in its files, with the same result if heights are linear. The files are
-        in the folder that the environment names as ``TMPDIR``, else in ``/var/tmp``, and are removed at the end.
+        As for :func:`sample`.
     threads, progress
         As for :func:`tin`.
     **surface

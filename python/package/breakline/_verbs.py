@@ -455,8 +455,8 @@ class Volume:
         With ``swell`` or ``shrink``: the cut once it is loose, the ground in place that the fill takes, and the ground in
         place that is left over.
     unit : str or None
-        ``"m3"``, ``"yd3"``, ``"ft3"`` or ``"acre-ft"``; areas are in its squares, or in acres. None if no coordinate system is known: then volumes are in cubes
-        of the unit of the data.
+        ``"m3"``, ``"yd3"``, ``"ft3"`` or ``"acre-ft"``; areas are in its squares, or in acres. None if no coordinate system
+        is known: then volumes are in cubes of the unit of the data.
     name : str or None
         The name of the polygon, with ``name_by``.
     polygon_area : float or None
@@ -522,9 +522,7 @@ def volume(
     swell, shrink : float, optional
         The volumes of loose and of compacted ground, as multiples of those in place, such as 1.25 and 0.9; 1 by default.
     memory : int or str, optional
-        The memory for surfaces of points, such as ``"200MB"``; half of what is free by default. Files of points that need
-        more become a TIN in parts first, which is used in its files, with the same result if heights are linear. The files are
-        in the folder that the environment names as ``TMPDIR``, else in ``/var/tmp``, and are removed at the end.
+        As for :func:`sample`.
     threads, progress
         As for :func:`tin`.
     **surface

@@ -330,23 +330,17 @@ _QUANTITIES: "dict[str, dict[str, Any]]" = {
     "tpi": {},
 }
 
+#: Parameters of the cells in which a surface is drawn.
+_CELLS: "dict[str, Any]" = {"resolution": None, "extent": None, "align_to": None, "method": "linear"}
+
 #: Parameters of verbs other than those of a surface, and their defaults.
 _OF_VERBS: "dict[str, dict[str, Any]]" = {
-    "dem": {"resolution": None, "extent": None, "align_to": None, "method": "linear", "overviews": "auto"},
+    "dem": {**_CELLS, "overviews": "auto"},
     "hillshade": {
-        "resolution": None, "extent": None, "align_to": None, "method": "linear",
-        "shading": "standard", "azimuth": None, "altitude": None, "z_factor": None, "overviews": "auto",
+        **_CELLS, "shading": "standard", "azimuth": None, "altitude": None, "z_factor": None, "overviews": "auto",
     },
-    "color_relief": {
-        "resolution": None, "extent": None, "align_to": None, "method": "linear",
-        "ramp": "elevation", "match": "linear",
-    },
-    **{
-        verb: {
-            "resolution": None, "extent": None, "align_to": None, "method": "linear", "overviews": "auto", **own
-        }
-        for verb, own in _QUANTITIES.items()
-    },
+    "color_relief": {**_CELLS, "ramp": "elevation", "match": "linear"},
+    **{verb: {**_CELLS, "overviews": "auto", **own} for verb, own in _QUANTITIES.items()},
     "contour": {"interval": None, "base": 0.0, "levels": (), **MAP},
     "tin": {},
 }  # fmt: skip
