@@ -623,6 +623,15 @@ fn grid(
     })
 }
 
+/// The file that cells are written to, under the names in Python.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct CellTarget {
+    file: PathBuf,
+    overwrite: bool,
+    overviews: String,
+}
+
 /// Writes cells as GeoTIFF: heights, or shades, which can also be written as PNG.
 #[pyfunction]
 pub(crate) fn write_cells(
@@ -631,12 +640,16 @@ pub(crate) fn write_cells(
     transform: [f64; 6],
     crs: Option<&str>,
     shades: bool,
-    target: (PathBuf, bool),
-    overviews: &str,
+    target: CellTarget,
     call: Call,
 ) -> PyResult<()> {
     let grid = grid(&cells, transform, crs)?;
-    let (overviews, (file, overwrite)) = (requests::overviews(overviews)?, target);
+    let CellTarget {
+        file,
+        overwrite,
+        overviews,
+    } = target;
+    let overviews = requests::overviews(&overviews)?;
     let format = if shades {
         CellFormat::Shades
     } else {

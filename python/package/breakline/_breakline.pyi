@@ -220,8 +220,7 @@ def write_cells(
     transform: list[float],
     crs: Optional[str],
     shades: bool,
-    target: tuple[str, bool],
-    overviews: str,
+    target: dict[str, Any],
     call: _Call,
 ) -> None: ...
 def write_contours(

@@ -228,15 +228,12 @@ class Raster(Compared):
         if shades:
             cells[cells == 0] = np.nan
         with call(threads, progress) as request:
-            _breakline.write_cells(
-                cells,
-                self._gdal,
-                self.crs,
-                bool(shades),
-                (_inputs.path(path, "path"), bool(overwrite)),
-                _inputs.name(overviews, "overviews"),
-                request,
-            )
+            target = {
+                "file": _inputs.path(path, "path"),
+                "overwrite": bool(overwrite),
+                "overviews": _inputs.name(overviews, "overviews"),
+            }
+            _breakline.write_cells(cells, self._gdal, self.crs, bool(shades), target, request)
 
     def _cells(self) -> np.ndarray:
         """The cells as a new array of float64; masked ones have no height."""
