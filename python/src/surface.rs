@@ -56,17 +56,27 @@ impl Surface {
     }
 }
 
-/// Returns the request for the TIN of points and lines.
-fn requested(
-    points: &[PointInput<'_>],
+/// Returns what `build` makes of the request for the TIN of points and lines.
+fn built(
+    py: Python<'_>,
+    points: Vec<PointInput<'_>>,
     read: &ReadArguments,
     systems: &SystemArguments,
-    options: &SurfaceArguments<'_>,
-) -> PyResult<SurfaceRequest> {
-    Ok(SurfaceRequest {
-        source: Source::Points(Box::new(options.request(points, read)?)),
+    options: SurfaceArguments<'_>,
+    call: &Call,
+    build: impl FnOnce(&SurfaceRequest, &Context<'_>) -> breakline::Result<SurfaceProduct> + Send,
+) -> PyResult<Surface> {
+    let request = SurfaceRequest {
+        source: Source::Points(Box::new(options.request(&points, read)?)),
         systems: systems.options()?,
+    };
+    let count = requests::count(&points).filter(|_| !options.have_lines());
+    // The arrays are copied, and may be changed.
+    drop((points, options));
+    work::run_on(py, call, count, move |context| -> Result<_> {
+        Ok(build(&request, context)?)
     })
+    .map(Surface::of)
 }
 
 #[pymethods]
@@ -83,14 +93,10 @@ impl Surface {
         call: Call,
     ) -> PyResult<Self> {
         let method = requests::method(method)?;
-        let request = requested(&points, &read, &systems, &options)?;
-        let count = requests::count(&points).filter(|_| !options.have_lines());
-        // The arrays are copied, and may be changed.
-        drop((points, options));
-        work::run_on(py, &call, count, move |context| -> Result<_> {
-            Ok(run::triangles_for(method, &request, context)?)
-        })
-        .map(Surface::of)
+        let build = move |request: &SurfaceRequest, context: &Context<'_>| {
+            run::triangles_for(method, request, context)
+        };
+        built(py, points, &read, &systems, options, &call, build)
     }
 
     /// Builds one of `count` TINs of points and lines that are only asked: in files if it needs
@@ -111,14 +117,10 @@ impl Surface {
         let method = requests::method(method)?;
         let memory = memory.map(requests::memory).transpose()?;
         let memory = memory.map(|all| all / count.max(1));
-        let request = requested(&points, &read, &systems, &options)?;
-        let known = requests::count(&points).filter(|_| !options.have_lines());
-        // The arrays are copied, and may be changed.
-        drop((points, options));
-        work::run_on(py, &call, known, move |context| -> Result<_> {
-            Ok(run::open_surface(&request, method, memory, context)?)
-        })
-        .map(Surface::of)
+        let build = move |request: &SurfaceRequest, context: &Context<'_>| {
+            run::open_surface(request, method, memory, context)
+        };
+        built(py, points, &read, &systems, options, &call, build)
     }
 
     /// Reads a mesh or a raster, or opens a TIN; `None` if the file has points.

@@ -36,7 +36,7 @@ def assigned(surface: "dict[str, Any]") -> Optional[str]:
 
 def asked(memory: Any, count: int = 1) -> "Callable[..., _breakline.Surface]":
     """Return what builds one of some surfaces, in files if they need more memory: for what is only asked."""
-    return partial(_breakline.Surface.ask, memory=None if memory is None else str(memory), count=max(count, 1))
+    return partial(_breakline.Surface.ask, memory=None if memory is None else str(memory), count=count)
 
 
 def surface_of(
