@@ -95,6 +95,7 @@ use crate::run::products::tin::{self, TinRequest};
 use crate::run::sources::checksum::checksum;
 use crate::run::sources::point_files::{BadFiles, PointFiles};
 use crate::run::sources::systems::SystemOptions;
+use crate::terrain::CellValue;
 use crate::terrain::tiles::{TileStep, Work};
 
 /// Bytes per point of a triangulation in its file; measured.
@@ -395,13 +396,13 @@ impl Job {
     /// Returns the numbers of the plan.
     pub fn size(&self) -> JobSize {
         let plan = &self.plan;
-        // Blocks at borders are written by each tile that they meet; measured.
-        let cells = plan.cells().saturating_mul(8);
+        // Blocks at borders are written by each tile that they meet: twice the cells, as measured.
+        let cells_of = |bytes: usize| plan.cells().saturating_mul(2 * bytes as u64);
         let points = plan.point_count();
         let drawn = match self.verb.keeps() {
             Keeps::Triangles => points.saturating_mul(BYTES_A_POINT_OF_PART),
-            Keeps::Gradients(_) => cells.saturating_mul(4),
-            Keeps::Heights(_) | Keeps::Contours(_) => cells,
+            Keeps::Gradients(_) => cells_of(<[f64; 2]>::BYTES),
+            Keeps::Heights(_) | Keeps::Contours(_) => cells_of(f32::BYTES),
         };
         JobSize {
             files: plan.files.len(),
