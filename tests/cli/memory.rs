@@ -1,7 +1,6 @@
 //! Verbs that ask a surface of points which are larger than the memory.
 
 use std::fmt::Write as _;
-use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
 use tempfile::TempDir;
@@ -100,31 +99,31 @@ fn larger_points_are_asked_in_one_command() {
 fn memory_that_cannot_be_kept_to_is_noted_or_refused() {
     let folder = points();
     let at = "--at at.csv";
-    for (words, code, said) in [
+    for (words, works, said) in [
         (
             format!("sample tiles/west.xyz {at} --memory 1MB"),
-            2,
+            false,
             "expected at least 16MB",
         ),
         (
             format!("sample tiles/*.xyz {at} --memory {LITTLE} --method nearest"),
-            0,
+            true,
             "note: --memory has no effect: tiles have linear heights only",
         ),
         (
             format!("sample tiles/*.xyz {at} --memory {LITTLE} --add-ridges"),
-            0,
+            true,
             "note: --memory has no effect: --add-ridges does not work with tiles yet",
         ),
         (
             format!("volume tiles/west.xyz --plane 3 --memory {LITTLE} --boundary none.shp"),
-            3,
+            false,
             "none.shp",
         ),
     ] {
         let (found, _, printed) = run(&folder, &words);
         assert!(printed.contains(said), "{words}: {printed}");
-        assert_eq!(found == Some(0), code == 0, "{words}: {printed}");
+        assert_eq!(found == Some(0), works, "{words}: {printed}");
         assert_left_nothing(&folder);
     }
     let words = format!("sample tiles/*.xyz {at} --memory {LITTLE}");
@@ -146,31 +145,24 @@ fn a_signal_leaves_no_file_of_the_surface() {
     use std::time::{Duration, Instant};
 
     let folder = points();
-    let is_there = |folder: &Path| {
-        let inner = std::fs::read_dir(folder.join("tmp")).unwrap();
+    let is_there = |name: &str| {
+        let inner = std::fs::read_dir(folder.path().join("tmp")).unwrap();
         inner
             .flatten()
-            .any(|entry| entry.path().join("surface.tins.job").exists())
-    };
-    let is_complete = |folder: &Path| {
-        let inner = std::fs::read_dir(folder.join("tmp")).unwrap();
-        inner
-            .flatten()
-            .any(|entry| entry.path().join("surface.tins").exists())
+            .any(|entry| entry.path().join(name).exists())
     };
     // While tiles are made, and while points are waited for.
-    let moments: [&dyn Fn(&Path) -> bool; 2] = [&is_there, &is_complete];
-    for reached in moments {
+    for name in ["surface.tins.job", "surface.tins"] {
         let words = format!("sample tiles/*.xyz --at - --memory {LITTLE}");
         let mut child = program(&folder, &words)
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
         let start = Instant::now();
-        while !reached(folder.path()) {
+        while !is_there(name) {
             assert!(
                 start.elapsed() < Duration::from_secs(120),
-                "it has not come"
+                "{name} has not appeared"
             );
             std::thread::sleep(Duration::from_millis(2));
         }
