@@ -11,8 +11,9 @@ pub struct Options {
     pub cut: OnDamage,
     /// How much is read of each point of LAS and LAZ.
     pub detail: Detail,
-    /// Of files with an octree (COPC), only the coarse levels are read: to the first one on which
-    /// points are at most so far apart, and those above it. It is an error if a file has none.
+    /// The largest distance between points on the finest level of an octree (COPC) that is read, in
+    /// the unit of the file; coarser levels are read as well. `None` reads all levels. A file
+    /// without an octree is then an error.
     pub resolution: Option<f64>,
 }
 

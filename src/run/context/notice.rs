@@ -29,7 +29,7 @@ pub enum Notice {
     },
     /// All points of a file were read; with their number.
     PointsRead(PathBuf, u64),
-    /// Of a file with an octree, only the nodes were read that may have points within the bounds.
+    /// Only those nodes of an octree were read that may have points within the bounds.
     NodesRead {
         /// The file.
         path: PathBuf,

@@ -78,8 +78,10 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], &[u8])> {
         let found = end.and_then(|end| bytes.get(at + 8..end));
         found.filter(|_| is_kind).ok_or_else(|| {
             let kind = String::from_utf8_lossy(&kind[..3]).into_owned();
-            Error::format(format!("there is no chunk {kind} of a length that fits"))
-                .at(format!("byte {at}"))
+            Error::format(format!(
+                "the chunk {kind} is missing, or longer than the file"
+            ))
+            .at(format!("byte {at}"))
         })
     };
     let text = chunk(12, JSON)?;

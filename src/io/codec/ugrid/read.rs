@@ -18,7 +18,7 @@ pub(crate) fn read(bytes: &[u8], watch: Watch) -> Result<Triangles> {
             && variable.text("face_node_connectivity").is_some()
     };
     let mesh = file.variables.iter().find(is_mesh).ok_or_else(|| {
-        Error::unsupported("there is no mesh of faces (UGRID), as in a raster")
+        Error::unsupported("there is no mesh of faces (UGRID): the file may have a raster")
             .at("header")
             .cure("convert a raster with gdal_translate to GeoTIFF")
     })?;
