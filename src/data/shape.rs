@@ -100,13 +100,18 @@ impl Shape {
 
     /// Sets the height of every vertex.
     pub fn set_height(&mut self, z: f64) {
+        self.change_vertices(|p| p[2] = z);
+    }
+
+    /// Calls a function with every vertex, in order.
+    pub(crate) fn change_vertices(&mut self, change: impl FnMut(&mut [f64; 3])) {
         match self {
             Shape::Null => {}
-            Shape::Points(points) => points.iter_mut().for_each(|p| p[2] = z),
+            Shape::Points(points) => points.iter_mut().for_each(change),
             Shape::Lines(parts) | Shape::Polygon(parts) => {
-                parts.iter_mut().flatten().for_each(|p| p[2] = z)
+                parts.iter_mut().flatten().for_each(change)
             }
-            Shape::Faces(faces) => faces.iter_mut().flatten().flatten().for_each(|p| p[2] = z),
+            Shape::Faces(faces) => faces.iter_mut().flatten().flatten().for_each(change),
         }
     }
 }

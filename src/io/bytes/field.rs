@@ -31,9 +31,13 @@ pub(crate) fn parse_number(text: &str) -> std::result::Result<f64, String> {
     if text.chars().all(|c| c == '*') {
         return Ok(f64::NAN);
     }
-    match text.replacen(',', ".", 1).parse::<f64>() {
-        Ok(value) if value.is_finite() => Ok(value),
-        Ok(_) => Ok(f64::NAN),
+    match text.replacen(',', ".", 1).parse() {
+        Ok(value) => Ok(finite_or_none(value)),
         Err(_) => Err(text.to_owned()),
     }
+}
+
+/// Returns a number, or NaN, which stands for none, if it is infinite.
+pub(crate) fn finite_or_none(number: f64) -> f64 {
+    if number.is_finite() { number } else { f64::NAN }
 }

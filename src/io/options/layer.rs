@@ -1,6 +1,7 @@
 //! What is read of a vector file.
 
 use super::cut::OnDamage;
+use crate::data::Column;
 use crate::error::{Error, Result};
 
 /// The layer and the attributes to read of a vector file. Names are compared as written, else in
@@ -25,6 +26,15 @@ pub struct Options<'a> {
 }
 
 impl Options<'_> {
+    /// Returns the requested columns, still without numbers.
+    pub(crate) fn empty_columns(&self) -> Vec<Column> {
+        let column = |&name: &&str| Column {
+            name: name.to_owned(),
+            ..Column::default()
+        };
+        self.columns.iter().map(column).collect()
+    }
+
     /// Returns an error if a layer is requested that has none of the names of the file's only one.
     pub(crate) fn check_layer(&self, names: &[&str]) -> Result<()> {
         match self.layer {

@@ -1,17 +1,19 @@
-//! Which layer and which attributes are read of a file that may have several layers.
+//! What readers of files with several layers share: which layer and which attributes are read, and
+//! what they accept and report.
 
 use super::layer::Options;
-use crate::data::named;
+use crate::data::{Attributes, Layer, named};
 use crate::error::{Error, Result};
 use crate::io::bytes::field::no_such_field;
 
 impl Options<'_> {
     /// Returns the position of the layer to read among the names of all, and the attribute of the
-    /// heights. Names of layers may contain colons, which [`Spec`](crate::io::layer::Spec) takes
-    /// for the begin of an attribute. `is_field` tells whether the only layer has an attribute.
+    /// heights. Names of layers may contain colons, behind which
+    /// [`Spec`](crate::io::layer::Spec) expects an attribute. `is_field` returns true if the only
+    /// layer has an attribute of this name.
     ///
     /// # Errors
-    /// If there is no such layer; if there are several and none is named.
+    /// If no layer has the requested name, or none is requested and there is not exactly one.
     pub(crate) fn choose(
         &self,
         layers: &[String],
@@ -58,6 +60,40 @@ impl Options<'_> {
             false => list(),
         };
         Err(Error::usage(format!("there is no layer \"{wanted}\"")).cure(cure))
+    }
+
+    /// Returns a layer without shapes that has attributes with these names.
+    pub(crate) fn empty_layer(&self, fields: Vec<String>) -> Layer {
+        Layer {
+            columns: self.empty_columns(),
+            attributes: self.keeps_attributes.then(|| Attributes {
+                names: fields.clone(),
+                rows: Vec::new(),
+            }),
+            fields,
+            ..Layer::default()
+        }
+    }
+}
+
+/// Limit for the nesting of geometry collections.
+const MAX_DEPTH: usize = 16;
+
+/// Returns an error if geometry collections are nested too deep.
+pub(crate) fn check_depth(depth: usize) -> Result<()> {
+    match depth > MAX_DEPTH {
+        true => Err(Error::limit(format!(
+            "geometry collections nested more than {MAX_DEPTH} deep"
+        ))),
+        false => Ok(()),
+    }
+}
+
+/// Adds a warning that counts the records without a height, if there are any.
+pub(crate) fn warn_of_missing_heights(records: usize, layer: &mut Layer) {
+    if records > 0 {
+        let lacking = "records without a number in the field of the heights";
+        layer.warnings.push(format!("{records} {lacking}").into());
     }
 }
 

@@ -10,15 +10,12 @@ use gdal_sys::OGRwkbGeometryType as Type;
 
 use super::messages;
 use crate::crs::Crs;
-use crate::data::{Attributes, Column, Layer, Shape, Value, oriented};
+use crate::data::{Layer, Shape, Value, oriented};
 use crate::error::{Error, Result};
-use crate::io::bytes::field::{not_a_number, parse_number};
+use crate::io::bytes::field::{finite_or_none, not_a_number, parse_number};
 use crate::io::bytes::watch::{Watch, unwatched};
 use crate::io::options::layer::Options;
-use crate::io::options::layers::Fields;
-
-/// Limit for the nesting of geometry collections; deeper ones lead to an error.
-const MAX_DEPTH: usize = 16;
+use crate::io::options::layers::{Fields, check_depth, warn_of_missing_heights};
 
 /// Reads a layer of any vector file that GDAL supports; `layer` may be omitted if the file has only
 /// one.
@@ -48,7 +45,6 @@ pub fn read_layer(path: &Path, layer: Option<&str>) -> Result<Layer> {
 /// requested column is not a number.
 pub fn read_layer_with(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
     messages::listen();
-    let columns = options.columns;
     let open = DatasetOptions {
         open_flags: GdalOpenFlags::GDAL_OF_VECTOR,
         ..DatasetOptions::default()
@@ -70,27 +66,15 @@ pub fn read_layer_with(path: &Path, options: &Options, watch: Watch) -> Result<L
         .layer_by_name(layer_name)
         .map_err(|error| messages::error(path, error))?;
     let names: Vec<String> = source.defn().fields().map(|field| field.name()).collect();
-    let fields = Fields::of(&names, height_field.as_deref(), columns)
+    let fields = Fields::of(&names, height_field.as_deref(), options.columns)
         .map_err(|error| error.in_file(path))?;
     let mut layer = Layer {
-        columns: columns
-            .iter()
-            .map(|&name| Column {
-                name: name.to_owned(),
-                ..Column::default()
-            })
-            .collect(),
         format: format!(
             "GDAL {} {}",
             dataset.driver().short_name(),
             geometry_type_to_name(source.defn().geometry_type())
         ),
-        attributes: options.keeps_attributes.then(|| Attributes {
-            names: names.clone(),
-            rows: Vec::new(),
-        }),
-        fields: names,
-        ..Layer::default()
+        ..options.empty_layer(names)
     };
     let reference = source.spatial_ref();
     let is_swapped = reference.as_ref().is_some_and(is_north_first);
@@ -108,7 +92,7 @@ pub fn read_layer_with(path: &Path, options: &Options, watch: Watch) -> Result<L
         if is_swapped {
             layer.shapes[first..]
                 .iter_mut()
-                .for_each(|shape| each_vertex(shape, |vertex| vertex.swap(0, 1)));
+                .for_each(|shape| shape.change_vertices(|vertex| vertex.swap(0, 1)));
         }
     }
     // The iterator ends at an error as it does at the end of the file.
@@ -119,11 +103,7 @@ pub fn read_layer_with(path: &Path, options: &Options, watch: Watch) -> Result<L
         )));
     }
     layer.warnings.extend(messages::warnings());
-    if without_height > 0 {
-        layer.warnings.push(
-            format!("{without_height} records without a number in the field of the heights").into(),
-        );
-    }
+    warn_of_missing_heights(without_height, &mut layer);
     Ok(layer)
 }
 
@@ -149,7 +129,7 @@ fn add_shapes(
     let height = value.map_or(Ok(f64::NAN), number).unwrap_or(f64::NAN);
     into[first..]
         .iter_mut()
-        .for_each(|shape| each_vertex(shape, |vertex| vertex[2] = height));
+        .for_each(|shape| shape.set_height(height));
     Ok(height.is_nan())
 }
 
@@ -253,25 +233,12 @@ fn number(value: FieldValue) -> std::result::Result<f64, String> {
         FieldValue::RealValue(value) => value,
         other => return Err(format!("{other:?}")),
     };
-    Ok(if number.is_finite() { number } else { f64::NAN })
-}
-
-fn each_vertex(shape: &mut Shape, change: impl FnMut(&mut [f64; 3])) {
-    match shape {
-        Shape::Null => {}
-        Shape::Points(points) => points.iter_mut().for_each(change),
-        Shape::Lines(parts) | Shape::Polygon(parts) => parts.iter_mut().flatten().for_each(change),
-        Shape::Faces(faces) => faces.iter_mut().flatten().flatten().for_each(change),
-    }
+    Ok(finite_or_none(number))
 }
 
 /// Adds the shape of a geometry, or several for a collection.
 fn shapes(geometry: &Geometry, depth: usize, into: &mut Vec<Shape>) -> Result<()> {
-    if depth > MAX_DEPTH {
-        return Err(Error::limit(format!(
-            "geometry collections nested more than {MAX_DEPTH} deep"
-        )));
-    }
+    check_depth(depth)?;
     let members = || (0..geometry.geometry_count()).map(|i| geometry.get_geometry(i));
     let kind = geometry_type_flatten(geometry.geometry_type());
     into.push(match kind {

@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 use super::shape::{Object, array, kind, shape_of};
 use super::{RECORD, WGS_84};
 use crate::crs::Crs;
-use crate::data::{Attributes, Column, Layer, Shape, Value as Attribute};
+use crate::data::{Attributes, Layer, Shape, Value as Attribute};
 use crate::error::{Error, Result, Setting, wording};
 use crate::io::bytes::decimal_mark::DecimalMark;
 use crate::io::bytes::field::{no_such_field, not_a_number, parse_number};
@@ -150,13 +150,9 @@ struct GeoJsonReader {
 
 impl GeoJsonReader {
     fn new(format: &str, options: &Options) -> Self {
-        let columns = options.columns.iter().map(|&name| Column {
-            name: name.to_owned(),
-            ..Column::default()
-        });
         let layer = Layer {
             format: format.to_owned(),
-            columns: columns.collect(),
+            columns: options.empty_columns(),
             ..Layer::default()
         };
         let found_columns = options.columns.iter().map(|_| Default::default()).collect();

@@ -2,9 +2,7 @@
 
 use crate::data::{Bounds, Shape, oriented, polygons};
 use crate::error::{Error, Result};
-
-/// Limit for the nesting of geometry collections; deeper ones lead to an error.
-const MAX_DEPTH: usize = 16;
+use crate::io::options::layers::check_depth;
 
 /// What heights add to the codes of types.
 const WITH_HEIGHTS: u32 = 1000;
@@ -183,11 +181,7 @@ impl<'a> Bytes<'a> {
     }
 
     fn geometry(&mut self, depth: usize, into: &mut Vec<Shape>) -> Result<()> {
-        if depth > MAX_DEPTH {
-            return Err(Error::limit(format!(
-                "geometry collections nested more than {MAX_DEPTH} deep"
-            )));
-        }
+        check_depth(depth)?;
         let head = self.head()?;
         into.push(match head.kind {
             POINT => Shape::Points(self.point(head)?.into_iter().collect()),

@@ -9,12 +9,12 @@ use rusqlite::{Connection, ErrorCode, OpenFlags, OptionalExtension, Row};
 
 use super::geometry;
 use crate::crs::Crs;
-use crate::data::{Attributes, Column, Layer, Shape, Value};
+use crate::data::{Layer, Shape, Value};
 use crate::error::{Error, Result};
-use crate::io::bytes::field::{not_a_number, parse_number};
+use crate::io::bytes::field::{finite_or_none, not_a_number, parse_number};
 use crate::io::bytes::watch::Watch;
 use crate::io::options::layer::Options;
-use crate::io::options::layers::Fields;
+use crate::io::options::layers::{Fields, warn_of_missing_heights};
 
 /// How each database begins.
 const MAGIC: &[u8] = b"SQLite format 3\0";
@@ -85,8 +85,8 @@ enum Changes {
 /// Returns how changes are kept.
 ///
 /// # Errors
-/// If the file is no database, or its last page is not whole: SQLite would take what is missing as
-/// zeros.
+/// If the file is not an SQLite database, or is cut within a page: SQLite would read what is
+/// missing as zeros.
 fn check_head(path: &Path) -> Result<Changes> {
     let mut file = File::open(path)?;
     let mut head = [0; 20];
@@ -145,6 +145,15 @@ struct Field {
     name: String,
     /// The type that the table states.
     kind: String,
+    /// Whether it is the key, or a part of it.
+    is_key: bool,
+}
+
+impl Field {
+    /// Returns true if its values are bytes, which are kept as missing values.
+    fn has_bytes(&self) -> bool {
+        self.kind.to_ascii_uppercase().contains("BLOB")
+    }
 }
 
 /// What is read of a database.
@@ -184,7 +193,7 @@ impl Source {
                 .iter()
                 .filter_map(|table| columns(database, table).ok());
             let mut fields = fields.flatten();
-            fields.any(|(field, ..)| field.eq_ignore_ascii_case(wanted))
+            fields.any(|field| field.name.eq_ignore_ascii_case(wanted))
         };
         let (at, height_field) = options.choose(&names, is_field)?;
         let (table, geometry, kind, system) = layers.into_iter().nth(at).unwrap_or_default();
@@ -193,19 +202,19 @@ impl Source {
         let columns = columns(database, &table)?;
         if !columns
             .iter()
-            .any(|(name, ..)| name.eq_ignore_ascii_case(&geometry))
+            .any(|column| column.name.eq_ignore_ascii_case(&geometry))
         {
             return Err(Error::format(format!(
                 "layer {table} has no column {geometry}, which is to have the geometries"
             )));
         }
         // Only a whole number is an identifier of the standard; other keys are attributes.
-        let keys = columns.iter().filter(|(.., is_key)| *is_key).count();
-        for (name, kind, is_key) in columns {
-            if is_key && keys == 1 && kind.eq_ignore_ascii_case("INTEGER") {
-                key = Some(name);
-            } else if !name.eq_ignore_ascii_case(&geometry) {
-                fields.push(Field { name, kind });
+        let keys = columns.iter().filter(|column| column.is_key).count();
+        for column in columns {
+            if column.is_key && keys == 1 && column.kind.eq_ignore_ascii_case("INTEGER") {
+                key = Some(column.name);
+            } else if !column.name.eq_ignore_ascii_case(&geometry) {
+                fields.push(column);
             }
         }
         Ok(Source {
@@ -222,19 +231,9 @@ impl Source {
     fn read(&self, database: &Connection, options: &Options, watch: Watch) -> Result<Layer> {
         let names: Vec<String> = self.fields.iter().map(|field| field.name.clone()).collect();
         let fields = Fields::of(&names, self.height_field.as_deref(), options.columns)?;
-        let column = |name: &&str| Column {
-            name: (*name).to_owned(),
-            ..Column::default()
-        };
         let mut layer = Layer {
             format: format!("GeoPackage {}", self.kind),
-            columns: options.columns.iter().map(column).collect(),
-            attributes: options.keeps_attributes.then(|| Attributes {
-                names: names.clone(),
-                rows: Vec::new(),
-            }),
-            fields: names,
-            ..Layer::default()
+            ..options.empty_layer(names)
         };
         self.read_system(database, &mut layer)?;
         let mut statement = database.prepare(&self.query()).map_err(damaged)?;
@@ -249,16 +248,14 @@ impl Source {
             let added = self.add(row, &fields, &mut layer);
             without_height += usize::from(added.map_err(|e| e.at(self.name_of(row, record)))?);
         }
-        for field in self.bytes_lost(&layer) {
-            let lost = format!("attribute {field} has bytes, which are left out");
-            layer.warnings.push(lost.into());
+        if layer.attributes.is_some() {
+            let lost = self.fields.iter().filter(|field| field.has_bytes());
+            let lost = lost.map(|Field { name, .. }| {
+                format!("attribute {name} has bytes, which are left out").into()
+            });
+            layer.warnings.extend(lost);
         }
-        if without_height > 0 {
-            let lacking = "records without a number in the field of the heights";
-            layer
-                .warnings
-                .push(format!("{without_height} {lacking}").into());
-        }
+        warn_of_missing_heights(without_height, &mut layer);
         Ok(layer)
     }
 
@@ -270,17 +267,6 @@ impl Source {
             Some((name, value)) => format!("layer {}, {name} {value}", self.table),
             None => format!("layer {}, record {record}", self.table),
         }
-    }
-
-    /// Returns the attributes of bytes, which are kept as missing values.
-    fn bytes_lost(&self, layer: &Layer) -> Vec<&str> {
-        let is_of_bytes = |field: &&Field| field.kind.to_ascii_uppercase().contains("BLOB");
-        let fields = self.fields.iter().filter(is_of_bytes);
-        let is_kept = layer.attributes.is_some();
-        fields
-            .filter(|_| is_kept)
-            .map(|field| &*field.name)
-            .collect()
     }
 
     /// Returns the query for the geometry, after it the attributes, and the key.
@@ -366,12 +352,16 @@ impl Source {
     }
 }
 
-/// Returns the name of each column of a table, its type, and whether it is the key.
-fn columns(database: &Connection, table: &str) -> Result<Vec<(String, String, bool)>> {
+/// Returns the columns of a table.
+fn columns(database: &Connection, table: &str) -> Result<Vec<Field>> {
     let query = "SELECT name, type, pk FROM pragma_table_info(?1)";
     let mut statement = database.prepare(query).map_err(damaged)?;
     let columns = statement.query_map([table], |row| {
-        Ok((row.get(0)?, row.get(1)?, row.get::<_, i64>(2)? > 0))
+        Ok(Field {
+            name: row.get(0)?,
+            kind: row.get(1)?,
+            is_key: row.get::<_, i64>(2)? > 0,
+        })
     });
     columns.and_then(Iterator::collect).map_err(damaged)
 }
@@ -386,7 +376,7 @@ fn number(value: ValueRef) -> std::result::Result<f64, String> {
         ValueRef::Text(text) => parse_number(String::from_utf8_lossy(text).trim())?,
         ValueRef::Blob(bytes) => return Err(format!("{} bytes", bytes.len())),
     };
-    Ok(if number.is_finite() { number } else { f64::NAN })
+    Ok(finite_or_none(number))
 }
 
 fn kept(value: ValueRef, is_truth: bool) -> Value {
