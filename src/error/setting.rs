@@ -237,18 +237,21 @@ impl Command {
 pub enum Feature {
     /// Files that only GDAL reads.
     Gdal,
+    /// GeoPackage, by SQLite.
+    Gpkg,
     /// Reprojection with PROJ.
     Proj,
 }
 
 impl Feature {
     /// All features that texts mention.
-    pub const ALL: &'static [Feature] = &[Feature::Gdal, Feature::Proj];
+    pub const ALL: &'static [Feature] = &[Feature::Gdal, Feature::Gpkg, Feature::Proj];
 
     /// Returns the name of the feature in the manifest.
     pub fn name(self) -> &'static str {
         match self {
             Feature::Gdal => "gdal",
+            Feature::Gpkg => "gpkg",
             Feature::Proj => "proj",
         }
     }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::crs::Crs;
 use crate::data::{ContourLine, Layer};
-use crate::error::{Error, Result};
+use crate::error::{Error, Feature, Result, wording};
 use crate::io::Watch;
 use crate::io::bytes::output::Destination;
 use crate::io::codec::contour_summary::ContourSummary;
@@ -41,5 +41,5 @@ pub fn write_lines<'a>(target: impl Into<Destination<'a>>, _layer: &Layer) -> Re
 fn missing(path: &Path) -> Error {
     Error::unsupported("GeoPackage, which this build does not have")
         .in_file(path)
-        .cure("build with the feature `gpkg`")
+        .cure(wording!["build with ", Feature::Gpkg])
 }
