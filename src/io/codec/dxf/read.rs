@@ -5,6 +5,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
+use std::str::FromStr;
 
 use crate::data::{Layer, Shape};
 use crate::error::{Error, Result, Wording};
@@ -17,8 +18,8 @@ use crate::io::options::layer::Options;
 /// polylines, which become straight.
 ///
 /// # Errors
-/// If the drawing is binary, cut or damaged, there is no layer with the name, or attributes are
-/// asked for, which only GDAL reads.
+/// If the drawing is binary, cut or damaged; if no layer has the requested name; if attributes are
+/// requested, which only GDAL reads.
 pub(crate) fn read(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
     let bytes = bytes_of(path, watch)?;
     parse(&bytes, options, watch).map_err(|e| e.in_file(path))
@@ -58,27 +59,27 @@ struct Pair<'a> {
 
 impl Pair<'_> {
     fn number(&self) -> Result<f64> {
-        let number = std::str::from_utf8(self.value)
-            .ok()
-            .and_then(|text| text.parse::<f64>().ok());
-        number.filter(|number| number.is_finite()).ok_or_else(|| {
-            let shown = shown(self.value);
-            Error::format(format!(
-                "'{shown}' is the value of code {}, expected a finite number",
-                self.code
-            ))
-            .at(format!("line {}", self.line))
-        })
+        let number = parsed(self.value).filter(|number: &f64| number.is_finite());
+        number.ok_or_else(|| self.wrong("a finite number"))
     }
 
     fn flags(&self) -> Result<u32> {
-        let text = std::str::from_utf8(self.value).ok();
-        text.and_then(|text| text.parse().ok()).ok_or_else(|| {
-            let shown = shown(self.value);
-            Error::format(format!("'{shown}' is the value of code 70, expected flags"))
-                .at(format!("line {}", self.line))
-        })
+        parsed(self.value).ok_or_else(|| self.wrong("flags"))
     }
+
+    #[cold]
+    fn wrong(&self, expected: &str) -> Error {
+        let (shown, code) = (shown(self.value), self.code);
+        Error::format(format!(
+            "'{shown}' is the value of code {code}, expected {expected}"
+        ))
+        .at(format!("line {}", self.line))
+    }
+}
+
+/// Parses a text of a drawing.
+fn parsed<T: FromStr>(text: &[u8]) -> Option<T> {
+    std::str::from_utf8(text).ok()?.parse().ok()
 }
 
 struct Pairs<'a> {
@@ -93,10 +94,7 @@ impl<'a> Pairs<'a> {
         let Some(code) = self.text() else {
             return Ok(None);
         };
-        let parsed = std::str::from_utf8(code)
-            .ok()
-            .and_then(|code| code.parse().ok());
-        let code = parsed.ok_or_else(|| {
+        let code = parsed(code).ok_or_else(|| {
             Error::format(format!("'{}' is not a code of DXF", shown(code)))
                 .at(format!("line {}", self.line))
                 .cure("get the whole file, or save the drawing again")
@@ -127,7 +125,7 @@ struct Entity {
     layer: String,
     /// Corners 0 and 1 of a line, or the position of a vertex; NaN for what is not stated.
     at: [[f64; 3]; 2],
-    /// The vertices of an LWPOLYLINE.
+    /// The vertices of a polyline.
     vertices: Vec<[f64; 3]>,
     /// The height of all vertices of an LWPOLYLINE.
     elevation: f64,
@@ -151,11 +149,11 @@ const CONTROL: u32 = 16;
 /// A drawing while it is read.
 struct Drawing<'a> {
     wanted: Option<&'a str>,
-    /// The words 2 after SECTION: the name of the section.
+    /// The name of the current section; empty between sections.
     section: Vec<u8>,
     entity: Entity,
     /// A POLYLINE whose vertices follow.
-    polyline: Option<(Entity, Vec<[f64; 3]>)>,
+    polyline: Option<Entity>,
     layers: BTreeSet<String>,
     shapes: Vec<Shape>,
     others: BTreeMap<String, usize>,
@@ -255,20 +253,20 @@ impl<'a> Drawing<'a> {
     fn ended(&mut self, entity: Entity) -> Result<()> {
         let damage = |text: &str, line: usize| Error::format(text).at(format!("line {line}"));
         match (entity.kind.as_str(), &mut self.polyline) {
-            ("VERTEX", Some((polyline, vertices))) => {
+            ("VERTEX", Some(polyline)) => {
                 if entity.flags & CONTROL == 0 {
                     let [x, y, z] = entity.at[0];
                     let z = match polyline.flags & IN_SPACE {
                         0 => polyline.at[0][2],
                         _ => z,
                     };
-                    vertices.push([x, y, z]);
+                    polyline.vertices.push([x, y, z]);
                     polyline.arcs += entity.arcs;
                 }
             }
             ("SEQEND", Some(_)) => {
-                if let Some((polyline, vertices)) = self.polyline.take() {
-                    self.line(&polyline, vertices)?;
+                if let Some(polyline) = self.polyline.take() {
+                    self.line(polyline)?;
                 }
             }
             (kind, Some(_)) => {
@@ -277,26 +275,27 @@ impl<'a> Drawing<'a> {
             }
             ("VERTEX", None) => return Err(damage("a vertex outside of polylines", entity.line)),
             ("POLYLINE", None) if entity.flags & MESHES == 0 => {
-                self.polyline = Some((entity, Vec::new()));
+                self.polyline = Some(entity);
             }
             ("POLYLINE", None) => {
                 // Its vertices are read, and left out.
                 self.count(&entity, "polyface mesh");
-                let skipped = Entity {
+                self.polyline = Some(Entity {
                     kind: String::new(),
                     ..entity
-                };
-                self.polyline = Some((skipped, Vec::new()));
+                });
             }
             ("LWPOLYLINE", None) => {
-                let height = |[x, y, _]: &[f64; 3]| [*x, *y, entity.elevation];
-                let vertices = entity.vertices.iter().map(height).collect();
-                self.line(&entity, vertices)?;
+                let mut entity = entity;
+                for vertex in &mut entity.vertices {
+                    vertex[2] = entity.elevation;
+                }
+                self.line(entity)?;
             }
-            ("LINE", None) => {
-                let ends = entity.at.to_vec();
-                self.line(&entity, ends)?;
-            }
+            ("LINE", None) => self.line(Entity {
+                vertices: entity.at.to_vec(),
+                ..entity
+            })?,
             ("POINT", None) => {
                 if self.is_wanted(&entity) {
                     require_stated(&entity.at[..1], &entity)?;
@@ -313,12 +312,13 @@ impl<'a> Drawing<'a> {
     }
 
     /// Adds a line, unless another layer is wanted.
-    fn line(&mut self, entity: &Entity, mut vertices: Vec<[f64; 3]>) -> Result<()> {
-        if entity.kind.is_empty() || !self.is_wanted(entity) {
+    fn line(&mut self, entity: Entity) -> Result<()> {
+        if entity.kind.is_empty() || !self.is_wanted(&entity) {
             return Ok(());
         }
-        require_stated(&vertices, entity)?;
-        if entity.flags & CLOSED != 0 && entity.kind != "LINE" {
+        require_stated(&entity.vertices, &entity)?;
+        let mut vertices = entity.vertices;
+        if entity.flags & CLOSED != 0 {
             vertices.extend(vertices.first().copied());
         }
         self.arcs += entity.arcs;
