@@ -14,12 +14,11 @@ use std::fs::File;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
-use rayon::prelude::*;
-
+use super::cell_rows;
 use super::geotiff::RasterSummary;
 use super::prj::{self, Prj};
 use crate::crs::Crs;
-use crate::data::{self, BlockSource, Frame, Grid};
+use crate::data::{BlockSource, Frame, Grid};
 use crate::error::{Error, Result, Wording};
 use crate::io::bytes::rows::{Row, Rows, shown};
 use crate::io::bytes::watch::{bytes_of, unwatched};
@@ -31,9 +30,6 @@ const NODATA: f64 = -9999.0;
 
 /// Bytes within which the header ends.
 const HEADER: u64 = 1 << 12;
-
-/// Rows that are in memory at a time while a grid is written.
-const BAND: usize = 64;
 
 /// An ASCII grid whose header was read.
 #[derive(Debug)]
@@ -298,15 +294,7 @@ pub(crate) fn write(target: Destination, source: &dyn BlockSource) -> Result<Ras
         "ncols {}\nnrows {}\nxllcorner {left}\nyllcorner {bottom}\n{cell}\nNODATA_value {NODATA}",
         frame.width, frame.height
     )?;
-    let mut summary = RasterSummary::default();
-    for row in (0..frame.height).step_by(BAND) {
-        let values = data::cells_of_rows(source, row..frame.height.min(row + BAND))?;
-        summary.add(&values);
-        let texts: Vec<String> = values.par_chunks(frame.width).map(line).collect();
-        texts
-            .iter()
-            .try_for_each(|text| output.write_all(text.as_bytes()))?;
-    }
+    let summary = cell_rows::write(&mut output, source, |_, cells| Ok(line(cells).into_bytes()))?;
     let beside = target.path().with_extension("prj");
     let text = source.crs().map(Crs::to_prj).unwrap_or_default();
     if text.is_empty() {

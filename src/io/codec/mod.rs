@@ -1,7 +1,8 @@
 //! One file or folder for each format, and what several of them share: the summary of contours, the
-//! listing of a surface, world files, escapes of XML.
+//! listing of a surface, rows of cells as text, world files, escapes of XML.
 
 pub mod ascii_grid;
+mod cell_rows;
 pub(crate) mod cityjson;
 pub(crate) mod contour_summary;
 pub(crate) mod dxf;
