@@ -56,9 +56,8 @@ pub(crate) fn read(path: &Path, name: Option<&str>, watch: Watch) -> Result<Tria
             Event::Eof => parser.finish(),
             Event::Comment(_) | Event::Decl(_) | Event::PI(_) | Event::DocType(_) => Ok(()),
         };
-        let first = first_of(text, before);
         taken.map_err(|error| match error.location() {
-            None => error.at(line(&bytes, first)),
+            None => error.at(line(&bytes, first_of(text, before))),
             Some(_) => error,
         })?;
         if is_end {
@@ -148,8 +147,10 @@ struct Parser<'a> {
     open: Vec<(Element, String)>,
     /// The names of the surfaces with triangles, in order.
     names: Vec<String>,
-    /// The name of the current surface, and true if it is the one that is read.
-    current: (String, bool),
+    /// The name of the current surface.
+    current: String,
+    /// Whether the current surface is the one that is read.
+    is_read: bool,
     stated: Stated,
     text: String,
     /// The id of the current point.
@@ -172,7 +173,8 @@ impl<'a> Parser<'a> {
             wanted,
             open: Vec::new(),
             names: Vec::new(),
-            current: (String::new(), false),
+            current: String::new(),
+            is_read: false,
             stated: Stated::default(),
             text: String::new(),
             id: 0,
@@ -231,12 +233,11 @@ impl<'a> Parser<'a> {
                 self.stated.name = names.into_iter().flatten().find(|name| !name.is_empty());
             }
             Element::Surface => {
-                let name = value("name")?.unwrap_or_default();
-                let is_read = match self.wanted {
-                    Some(wanted) => wanted == name,
+                self.current = value("name")?.unwrap_or_default();
+                self.is_read = match self.wanted {
+                    Some(wanted) => wanted == self.current,
                     None => self.names.is_empty(),
                 };
-                self.current = (name, is_read);
             }
             Element::Breakline => {
                 let [name, kind] = ["name", "brkType"].map(value);
@@ -244,7 +245,7 @@ impl<'a> Parser<'a> {
                 self.kind = kind_of(&name, &kind);
             }
             Element::Definition => self.definition(value("surfType")?)?,
-            Element::Point if self.current.1 => {
+            Element::Point if self.is_read => {
                 let id = value("id")?;
                 let parsed = id.as_ref().and_then(|id| id.trim().parse().ok());
                 self.id = parsed.ok_or_else(|| {
@@ -262,8 +263,7 @@ impl<'a> Parser<'a> {
 
     /// Begins the triangles of a surface.
     fn definition(&mut self, kind: Option<String>) -> Result<()> {
-        let (name, is_read) = &self.current;
-        let is_read = *is_read;
+        let (name, is_read) = (&self.current, self.is_read);
         self.names.push(name.clone());
         match kind.as_deref() {
             Some("grid") if is_read => Err(Error::unsupported(format!(
@@ -285,7 +285,7 @@ impl<'a> Parser<'a> {
             .open
             .last()
             .is_some_and(|(element, _)| element.has_text());
-        if takes && self.current.1 {
+        if takes && self.is_read {
             self.text.push_str(text);
         }
         Ok(())
@@ -295,7 +295,7 @@ impl<'a> Parser<'a> {
         let Some((element, _)) = self.open.pop() else {
             return Ok(());
         };
-        if !element.has_text() || !self.current.1 {
+        if !element.has_text() || !self.is_read {
             return Ok(());
         }
         let text = std::mem::take(&mut self.text);
