@@ -174,8 +174,8 @@ type WriteShades = fn(Destination, &dyn BlockSource) -> Result<()>;
 type WriteColors = fn(Destination, &dyn BlockSource, &Colors) -> Result<()>;
 type WriteSpace = fn(&[Destination], &Tetrahedralized) -> Result<()>;
 type WritePlane = fn(&[Destination], &Triangulated) -> Result<()>;
-type WriteLines = fn(Destination, &Layer) -> Result<Vec<String>>;
-type WriteContours =
+pub(super) type WriteLines = fn(Destination, &Layer) -> Result<Vec<String>>;
+pub(super) type WriteContours =
     fn(Destination, &mut dyn Iterator<Item = ContourLine>, Option<&Crs>) -> Result<ContourSummary>;
 
 pub(super) type Sink<'a> = Result<Box<dyn PointSink + 'a>>;

@@ -2,8 +2,8 @@
 //! [`raster`], [`vector`] or [`plane`] returns.
 
 use super::format::{
-    Content, Format, FormatReader, Holding, KnownBy, Magic, PointWriter, Sink, WriteSurface,
-    Writers,
+    Content, Format, FormatReader, Holding, KnownBy, Magic, PointWriter, Sink, WriteContours,
+    WriteLines, WriteSurface, Writers,
 };
 use crate::data::PointInfo;
 use crate::error::{Command, Feature, Wording, wording};
@@ -16,6 +16,16 @@ use crate::io::codec::{
     ascii_grid, cityjson, dxf, geojson, geotiff, glb, gpkg, landxml, las, mesh2dm, obj, off, ply,
     png, shapefile, stl, tetgen, text, tin, triangle, ugrid, xyz_grid,
 };
+
+const SHAPES: &[Holding] = &[Holding::Points, Holding::Lines, Holding::Polygons];
+const SHAPES_AND_CRS: &[Holding] = &[
+    Holding::Points,
+    Holding::Lines,
+    Holding::Polygons,
+    Holding::Crs,
+];
+const SURFACE: &[Holding] = &[Holding::Mesh, Holding::Crs];
+const SURFACE_AND_LINES: &[Holding] = &[Holding::Mesh, Holding::Edges, Holding::Crs];
 
 const NOT_WRITTEN: Writers = Writers {
     points: None,
@@ -99,6 +109,14 @@ const fn lidar_writer(
     }
 }
 
+const fn layer_writers(contours: WriteContours, lines: WriteLines) -> Writers {
+    Writers {
+        contours: Some(contours),
+        lines: Some(lines),
+        ..NOT_WRITTEN
+    }
+}
+
 const fn surface_writer(write: WriteSurface) -> Writers {
     Writers {
         surface: Some(write),
@@ -136,7 +154,7 @@ const fn vector(
         extensions,
         magic,
         content: Content::Layer,
-        holds: &[Holding::Points, Holding::Lines, Holding::Polygons],
+        holds: SHAPES,
         ..ROW
     }
 }
@@ -271,22 +289,18 @@ pub static FORMATS: &[Format] = &[
         magic: &[Magic::At(0, &[0, 0, 0x27, 0x0a])],
         known_by: KnownBy::Name,
         content: Content::Layer,
-        holds: &[
-            Holding::Points,
-            Holding::Lines,
-            Holding::Polygons,
-            Holding::Crs,
-        ],
+        holds: SHAPES_AND_CRS,
         beside: &["shx", "dbf", "prj", "cpg"],
         parts: &["shx", "dbf", "prj", "cpg", "qpj", "qix", "sbn", "sbx"],
         read_along: &["shx", "dbf", "prj", "cpg"],
         gdal_names: &["ESRI Shapefile"],
         reader: FormatReader::Layer(shapefile::read_layer_with),
         writers: Writers {
-            contours: Some(|target, lines, crs| shapefile::write_contours(target, lines, crs)),
-            lines: Some(|target, layer| shapefile::write_lines(target, layer)),
             check_size: Some(shapefile::check_size),
-            ..NOT_WRITTEN
+            ..layer_writers(
+                |target, lines, crs| shapefile::write_contours(target, lines, crs),
+                |target, layer| shapefile::write_lines(target, layer),
+            )
         },
         help: "lines, polygons and points; contours; draped lines",
         ..ROW
@@ -297,19 +311,13 @@ pub static FORMATS: &[Format] = &[
         extensions: &["geojson", "json"],
         magic: &[Magic::At(0, b"{")],
         content: Content::Layer,
-        holds: &[
-            Holding::Points,
-            Holding::Lines,
-            Holding::Polygons,
-            Holding::Crs,
-        ],
+        holds: SHAPES_AND_CRS,
         gdal_names: &["GeoJSON"],
         reader: FormatReader::Layer(geojson::read_layer_with),
-        writers: Writers {
-            contours: Some(|target, lines, crs| geojson::write_contours(target, lines, crs)),
-            lines: Some(|target, layer| geojson::write_lines(target, layer)),
-            ..NOT_WRITTEN
-        },
+        writers: layer_writers(
+            |target, lines, crs| geojson::write_contours(target, lines, crs),
+            |target, layer| geojson::write_lines(target, layer),
+        ),
         help: "lines, polygons and points; contours; draped lines",
         ..ROW
     },
@@ -318,14 +326,13 @@ pub static FORMATS: &[Format] = &[
         noun: "a file of GeoJSON lines",
         extensions: &["geojsonl", "geojsons"],
         content: Content::Layer,
-        holds: &[Holding::Points, Holding::Lines, Holding::Polygons],
+        holds: SHAPES,
         gdal_names: &["GeoJSONSeq"],
         reader: FormatReader::Layer(geojson::read_lines_with),
-        writers: Writers {
-            contours: Some(|target, lines, crs| geojson::write_contour_lines(target, lines, crs)),
-            lines: Some(|target, layer| geojson::write_line_records(target, layer)),
-            ..NOT_WRITTEN
-        },
+        writers: layer_writers(
+            |target, lines, crs| geojson::write_contour_lines(target, lines, crs),
+            |target, layer| geojson::write_line_records(target, layer),
+        ),
         help: "lines, polygons and points; contours; draped lines; one feature a line",
         ..ROW
     },
@@ -336,20 +343,14 @@ pub static FORMATS: &[Format] = &[
         magic: &[Magic::At(0, b"SQLite format 3\0")],
         known_by: KnownBy::Bytes,
         content: Content::Layer,
-        holds: &[
-            Holding::Points,
-            Holding::Lines,
-            Holding::Polygons,
-            Holding::Crs,
-        ],
+        holds: SHAPES_AND_CRS,
         read_along: &["gpkg-wal"],
         gdal_names: &["GPKG"],
         reader: DATABASE,
-        writers: Writers {
-            contours: Some(|target, lines, crs| gpkg::write_contours(target, lines, crs)),
-            lines: Some(|target, layer| gpkg::write_lines(target, layer)),
-            ..NOT_WRITTEN
-        },
+        writers: layer_writers(
+            |target, lines, crs| gpkg::write_contours(target, lines, crs),
+            |target, layer| gpkg::write_lines(target, layer),
+        ),
         help: "lines, polygons and points in named layers; contours; draped lines",
         ..ROW
     },
@@ -443,7 +444,7 @@ pub static FORMATS: &[Format] = &[
         extensions: &["ply"],
         magic: &[Magic::At(0, b"ply")],
         content: Content::Mesh,
-        holds: &[Holding::Mesh, Holding::Edges, Holding::Crs],
+        holds: SURFACE_AND_LINES,
         reader: FormatReader::Mesh(|path, watch| ply::read(&bytes_of(path, watch)?, watch)),
         writers: surface_writer(|target, mesh, crs| {
             ply::write(target, mesh, crs).map(|()| Remarks::default())
@@ -457,7 +458,7 @@ pub static FORMATS: &[Format] = &[
         noun: "an OBJ mesh",
         extensions: &["obj"],
         content: Content::Mesh,
-        holds: &[Holding::Mesh, Holding::Crs],
+        holds: SURFACE,
         reader: FormatReader::Mesh(|path, watch| obj::read(&bytes_of(path, watch)?, watch)),
         writers: surface_writer(|target, mesh, crs| {
             obj::write(target, mesh, crs).map(|()| Remarks::default())
@@ -471,7 +472,7 @@ pub static FORMATS: &[Format] = &[
         noun: "an OFF mesh",
         extensions: &["off"],
         content: Content::Mesh,
-        holds: &[Holding::Mesh, Holding::Crs],
+        holds: SURFACE,
         reader: FormatReader::Mesh(|path, watch| off::read(&bytes_of(path, watch)?, watch)),
         writers: surface_writer(|target, mesh, crs| {
             off::write(target, mesh, crs).map(|()| Remarks::default())
@@ -485,7 +486,7 @@ pub static FORMATS: &[Format] = &[
         noun: "a LandXML file",
         extensions: &["xml", "landxml"],
         content: Content::Mesh,
-        holds: &[Holding::Mesh, Holding::Edges, Holding::Crs],
+        holds: SURFACE_AND_LINES,
         reader: FormatReader::Surfaces(landxml::read),
         writers: surface_writer(landxml::write),
         cure: AS_MESH,
@@ -498,7 +499,7 @@ pub static FORMATS: &[Format] = &[
         extensions: &["glb"],
         magic: &[Magic::At(0, b"glTF")],
         content: Content::Mesh,
-        holds: &[Holding::Mesh, Holding::Crs],
+        holds: SURFACE,
         reader: FormatReader::Mesh(|path, watch| glb::read(&bytes_of(path, watch)?, watch)),
         writers: surface_writer(glb::write),
         cure: AS_MESH,
@@ -525,7 +526,7 @@ pub static FORMATS: &[Format] = &[
         magic: &[Magic::At(0, b"CDF\x01"), Magic::At(0, b"CDF\x02")],
         known_by: KnownBy::NameAndBytes,
         content: Content::Mesh,
-        holds: &[Holding::Mesh, Holding::Crs],
+        holds: SURFACE,
         reader: FormatReader::Mesh(|path, watch| ugrid::read(&bytes_of(path, watch)?, watch)),
         writers: surface_writer(ugrid::write),
         cure: AS_MESH,
@@ -537,7 +538,7 @@ pub static FORMATS: &[Format] = &[
         noun: "a CityJSON file",
         extensions: &["cityjson"],
         content: Content::Mesh,
-        holds: &[Holding::Mesh, Holding::Crs],
+        holds: SURFACE,
         reader: FormatReader::Unread,
         writers: surface_writer(cityjson::write),
         cure: AS_MESH,
@@ -570,7 +571,7 @@ pub static FORMATS: &[Format] = &[
         magic: &[Magic::At(0, b"brkTIN\n\x1a")],
         known_by: KnownBy::Bytes,
         content: Content::Mesh,
-        holds: &[Holding::Mesh, Holding::Edges, Holding::Crs],
+        holds: SURFACE_AND_LINES,
         reader: FormatReader::Tin(tin::map),
         writers: surface_writer(|target, mesh, _| {
             tin::write(target, mesh).map(|()| Remarks::default())
@@ -586,7 +587,7 @@ pub static FORMATS: &[Format] = &[
         magic: &[Magic::At(0, b"{\"breakline_tin_parts\"")],
         known_by: KnownBy::Bytes,
         content: Content::Mesh,
-        holds: &[Holding::Mesh, Holding::Edges, Holding::Crs],
+        holds: SURFACE_AND_LINES,
         reader: FormatReader::Parts(tin::index),
         writers: surface_writer(|_, _, _| Err(tin::needs_tiles())),
         cure: AS_MESH,
