@@ -98,23 +98,20 @@ fn open_stream(
     options: Options,
 ) -> Result<Box<dyn PointSource + Send>> {
     let head = head(&mut stream).map_err(|error| Error::from(error).in_file(name))?;
-    let format = formats::detect(&head, name);
-    let noun = format.map_or("it", |format| format.noun);
-    let whole = io::Cursor::new(head.clone()).chain(stream);
-    match format.map(|format| format.reader) {
-        Some(FormatReader::Points { stream, .. }) => stream(Box::new(whole), name, options),
-        Some(FormatReader::Layer(_)) => Err(Error::unsupported(format!(
-            "{noun} cannot be read from a stream"
-        ))
-        .in_file(name)
-        .cure("give its path: it is a set of files")),
-        Some(FormatReader::Layers(_)) => Err(Error::unsupported(format!(
-            "{noun} cannot be read from a stream"
-        ))
-        .in_file(name)
-        .cure("give the path of a file")),
-        _ => Err(refusal(&head, name)),
-    }
+    let Some(format) = formats::detect(&head, name) else {
+        return Err(refusal(&head, name));
+    };
+    let cure = match format.reader {
+        FormatReader::Points { stream: open, .. } => {
+            let whole = io::Cursor::new(head).chain(stream);
+            return open(Box::new(whole), name, options);
+        }
+        FormatReader::Layer(_) => "give its path: it is a set of files",
+        FormatReader::Layers(_) => "give the path of a file",
+        _ => return Err(refusal(&head, name)),
+    };
+    let error = format!("{} cannot be read from a stream", format.noun);
+    Err(Error::unsupported(error).in_file(name).cure(cure))
 }
 
 /// Returns the detail that must be read of points that are to be written to `target`.
