@@ -28,6 +28,15 @@ pub(crate) fn write_rows<const N: usize>(
     output.write_all(&batch)
 }
 
+/// Returns the row of three numbers, given by their bytes.
+pub(crate) fn row_of([a, b, c]: [[u8; 4]; 3]) -> [u8; 12] {
+    let mut row = [0; 12];
+    row[..4].copy_from_slice(&a);
+    row[4..8].copy_from_slice(&b);
+    row[8..].copy_from_slice(&c);
+    row
+}
+
 /// Writes one line per item, in order, using all threads.
 pub(crate) fn write_lines<T: Copy + Sync>(
     output: &mut Output,

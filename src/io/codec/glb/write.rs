@@ -9,7 +9,7 @@ use crate::crs::Crs;
 use crate::data::{Bounds, ColorMatch, Colors};
 use crate::error::{Error, Result};
 use crate::io::Destination;
-use crate::io::bytes::lines::write_rows;
+use crate::io::bytes::lines::{row_of, write_rows};
 use crate::io::codec::listing::loss::{Loss, local_origin};
 use crate::io::codec::listing::{Listing, Remarks};
 use crate::io::codec::ramp;
@@ -197,13 +197,7 @@ fn write_arrays(
     local: &Local,
     bounds: &Bounds,
 ) -> Result<()> {
-    let floats = |[x, y, z]: [f32; 3]| {
-        let mut bytes = [0; 12];
-        for (to, value) in bytes.chunks_exact_mut(4).zip([x, y, z]) {
-            to.copy_from_slice(&value.to_le_bytes());
-        }
-        bytes
-    };
+    let floats = |p: [f32; 3]| row_of(p.map(f32::to_le_bytes));
     write_rows(output, mesh.vertices().map(|p| floats(local.floats(p))))?;
     let normals = normals(mesh).into_iter();
     write_rows(
@@ -212,14 +206,8 @@ fn write_arrays(
     )?;
     let colors = colors(bounds);
     write_rows(output, mesh.vertices().map(|[_, _, z]| colors.of(z as f32)))?;
-    let faces = mesh.faces().map(|face| {
-        let mut bytes = [0; 12];
-        for (to, v) in bytes.chunks_exact_mut(4).zip(face) {
-            to.copy_from_slice(&v.to_le_bytes());
-        }
-        bytes
-    });
-    write_rows(output, faces)?;
+    let faces = mesh.faces();
+    write_rows(output, faces.map(|face| row_of(face.map(u32::to_le_bytes))))?;
     Ok(())
 }
 

@@ -6,7 +6,7 @@ use super::classic::{ATTRIBUTES, CHAR, DIMENSIONS, DOUBLE, INT, VARIABLES};
 use crate::crs::{Crs, CrsKind};
 use crate::error::{Error, Result};
 use crate::io::Destination;
-use crate::io::bytes::lines::write_rows;
+use crate::io::bytes::lines::{row_of, write_rows};
 use crate::io::codec::listing::{Listing, Remarks};
 
 /// The dimensions.
@@ -53,14 +53,11 @@ pub(crate) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> R
     for axis in 0..3 {
         write_rows(&mut output, mesh.vertices().map(|p| p[axis].to_be_bytes()))?;
     }
-    let corners = mesh.faces().map(|face| {
-        let mut row = [0; 12];
-        for (to, v) in row.chunks_exact_mut(4).zip(face) {
-            to.copy_from_slice(&v.to_be_bytes());
-        }
-        row
-    });
-    write_rows(&mut output, corners)?;
+    let faces = mesh.faces();
+    write_rows(
+        &mut output,
+        faces.map(|face| row_of(face.map(u32::to_be_bytes))),
+    )?;
     target.put(output)?;
     Ok(Remarks::default())
 }
