@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::io::Destination;
 use crate::io::bytes::lines::{row_of, write_rows};
 use crate::io::codec::listing::loss::{Loss, local_origin};
-use crate::io::codec::listing::{Listing, Remarks};
+use crate::io::codec::listing::{Listing, Remarks, crs_text};
 use crate::io::codec::ramp;
 
 /// The ramp for the colors of vertices.
@@ -132,8 +132,7 @@ fn description(
         if let Some(code) = crs.epsg {
             extras.insert("epsg".to_owned(), json!(code));
         }
-        let wkt: String = crs.to_wkt().lines().map(str::trim).collect();
-        extras.insert("wkt".to_owned(), json!(wkt));
+        extras.insert("wkt".to_owned(), json!(crs_text::wkt(crs)));
     }
     let version = env!("CARGO_PKG_VERSION");
     let targets = [34962, 34962, 34962, 34963];

@@ -5,11 +5,12 @@ use std::io::Write;
 use super::break_type;
 use super::system::{elevation_name, unit_names};
 use crate::crs::{Crs, CrsKind, Unit};
+use crate::data::doubled_area;
 use crate::error::{Error, Result};
 use crate::io::bytes::decimal::Decimal;
 use crate::io::bytes::lines::write_lines;
 use crate::io::codec::listing::lines::{self, Lines};
-use crate::io::codec::listing::{Listing, Remarks};
+use crate::io::codec::listing::{Listing, Remarks, crs_text};
 use crate::io::codec::xml::escaped;
 use crate::io::{Destination, Output};
 
@@ -125,7 +126,7 @@ impl Units {
 }
 
 fn write_system(output: &mut Output, crs: &Crs) -> Result<()> {
-    let wkt: String = crs.to_wkt().lines().map(str::trim).collect();
+    let wkt = crs_text::wkt(crs);
     write!(output, "<CoordinateSystem name=\"{}\"", escaped(&crs.name))?;
     if let Some(code) = crs.epsg {
         write!(output, " epsgCode=\"{code}\"")?;
@@ -144,12 +145,12 @@ fn write_boundaries(output: &mut Output, mesh: &Listing) -> Result<()> {
     }
     writeln!(output, "<Boundaries>")?;
     for ring in rings {
-        let mut ring: Vec<[f64; 3]> = ring.iter().map(|&v| mesh.surface.position(v)).collect();
-        let kind = match lines::turn(&ring) < 0.0 {
+        let closed = ring.iter().chain(ring.first());
+        let ring: Vec<[f64; 3]> = closed.map(|&v| mesh.surface.position(v)).collect();
+        let kind = match doubled_area(&ring) < 0.0 {
             true => "void",
             false => "outer",
         };
-        ring.extend(ring.first().copied());
         write!(output, "<Boundary bndType=\"{kind}\" edgeTrim=\"false\">")?;
         write_points(output, ring)?;
         writeln!(output, "</Boundary>")?;

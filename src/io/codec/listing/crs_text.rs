@@ -17,8 +17,7 @@ pub(crate) fn comments(crs: Option<&Crs>) -> Vec<String> {
     if let Some(code) = code(crs) {
         return vec![format!("crs: {code}")];
     }
-    // WKT may be formatted in several lines; breaks and indentation have no meaning.
-    let text: String = crs.to_wkt().lines().map(str::trim).collect();
+    let text = wkt(crs);
     match text.len() {
         0 => Vec::new(),
         length if length < WHOLE => vec![format!("crs: {text}")],
@@ -27,6 +26,11 @@ pub(crate) fn comments(crs: Option<&Crs>) -> Vec<String> {
             .map(|part| format!("crs {part}"))
             .collect(),
     }
+}
+
+/// Returns the WKT of a coordinate system in one line: breaks and indentation have no meaning.
+pub(crate) fn wkt(crs: &Crs) -> String {
+    crs.to_wkt().lines().map(str::trim).collect()
 }
 
 /// Returns what a user should know of a format without coordinate systems.

@@ -140,19 +140,6 @@ fn next_on_rim(surface: &dyn Surface, from: (u32, usize), vertex: u32) -> Option
     Some((face, side))
 }
 
-/// Returns twice the area of a ring in plan: positive if it is counter-clockwise.
-pub(crate) fn turn(ring: &[[f64; 3]]) -> f64 {
-    let Some(&[left, bottom, _]) = ring.first() else {
-        return 0.0;
-    };
-    let local = |p: [f64; 3]| [p[0] - left, p[1] - bottom];
-    let pairs = ring.iter().zip(ring.iter().cycle().skip(1));
-    pairs
-        .map(|(&a, &b)| (local(a), local(b)))
-        .map(|([ax, ay], [bx, by])| ax * by - ay * bx)
-        .sum()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -204,8 +191,9 @@ mod tests {
         let areas: Vec<f64> = found
             .iter()
             .map(|ring| {
-                let ring: Vec<_> = ring.iter().map(|&v| mesh.position(v)).collect();
-                turn(&ring) / 2.0
+                let closed = ring.iter().chain(ring.first());
+                let closed: Vec<_> = closed.map(|&v| mesh.position(v)).collect();
+                data::doubled_area(&closed) / 2.0
             })
             .collect();
         let mut sorted = areas.clone();

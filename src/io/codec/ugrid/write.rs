@@ -7,7 +7,7 @@ use crate::crs::{Crs, CrsKind};
 use crate::error::{Error, Result};
 use crate::io::Destination;
 use crate::io::bytes::lines::{row_of, write_rows};
-use crate::io::codec::listing::{Listing, Remarks};
+use crate::io::codec::listing::{Listing, Remarks, crs_text};
 
 /// The dimensions.
 const NODES: u32 = 0;
@@ -85,7 +85,7 @@ fn variables(nodes: u64, faces: u64, crs: Option<&Crs>) -> Vec<Variable> {
     ];
     let mut all = vec![scalar("mesh2d", mesh)];
     if let Some(crs) = crs {
-        let wkt: String = crs.to_wkt().lines().map(str::trim).collect();
+        let wkt = crs_text::wkt(crs);
         let mut system = vec![text("name", crs.name.clone())];
         if let Some(code) = crs.epsg.and_then(|code| i32::try_from(code).ok()) {
             system.push(("epsg", Value::Int(code)));
