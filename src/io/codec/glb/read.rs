@@ -18,19 +18,17 @@ pub(crate) fn read(bytes: &[u8], watch: Watch) -> Result<Triangles> {
         .map_err(|error| Error::format(format!("not JSON: {error}")).at("chunk 0"))?;
     let file = File { json: &json, data };
     file.require_known()?;
-    let extras = &json["asset"]["extras"][EXTRAS];
     let mut triangles = Triangles {
-        crs: system(extras)?,
+        crs: system(&json["asset"]["extras"][EXTRAS])?,
         ..Triangles::default()
     };
-    let origin = origin(extras);
     for (number, node) in list(&json["nodes"]).iter().enumerate() {
         watch(0)?;
         let at = |e: Error| e.within(format!("node {number}"));
         let Some(mesh) = node.get("mesh") else {
             continue;
         };
-        let translation = translation(node, origin).map_err(at)?;
+        let translation = translation(node).map_err(at)?;
         let mesh = file.item("meshes", mesh).map_err(at)?;
         for primitive in list(&mesh["primitives"]) {
             file.add(primitive, translation, &mut triangles)
@@ -93,15 +91,6 @@ fn list(value: &Value) -> &[Value] {
     value.as_array().map_or(&[], |list| list)
 }
 
-/// Returns the origin in `extras`.
-fn origin(extras: &Value) -> Option<[f64; 3]> {
-    let numbers: Vec<f64> = list(&extras["origin"])
-        .iter()
-        .filter_map(Value::as_f64)
-        .collect();
-    numbers.try_into().ok()
-}
-
 fn system(extras: &Value) -> Result<Option<Crs>> {
     let crs = match (extras["wkt"].as_str(), extras["epsg"].as_u64()) {
         (Some(wkt), _) if !wkt.is_empty() => Crs::from_wkt(wkt),
@@ -113,7 +102,7 @@ fn system(extras: &Value) -> Result<Option<Crs>> {
 }
 
 /// Returns what is added to the positions of a node, in map axes.
-fn translation(node: &Value, origin: Option<[f64; 3]>) -> Result<[f64; 3]> {
+fn translation(node: &Value) -> Result<[f64; 3]> {
     for turned in ["matrix", "rotation", "scale"] {
         if node.get(turned).is_some() {
             return Err(Error::unsupported(format!("the node has a {turned}"))
@@ -125,11 +114,8 @@ fn translation(node: &Value, origin: Option<[f64; 3]>) -> Result<[f64; 3]> {
     };
     let numbers: Vec<f64> = list(stated).iter().filter_map(Value::as_f64).collect();
     match numbers[..] {
-        [x, up, south] => {
-            let found = [x, -south, up];
-            // The same numbers, but for the sign of a zero.
-            Ok(origin.filter(|origin| *origin == found).unwrap_or(found))
-        }
+        // The difference is never -0.
+        [x, up, south] => Ok([x, 0.0 - south, up]),
         _ => Err(Error::format(format!(
             "the translation is {stated}, expected three numbers"
         ))),
