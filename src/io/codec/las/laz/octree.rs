@@ -194,7 +194,8 @@ impl Octree {
             None => Ok(()),
             Some((x, y)) => Err(damaged(
                 format!(
-                    "the point at {x} {y} is outside of its node {key}, which is from {} {} to {} {}",
+                    "the point at {x} {y} is outside of its node {key}, which is from {} {} to \
+                     {} {}",
                     min[0], min[1], max[0], max[1]
                 ),
                 format!("chunk {} at byte {}", chunk.number, chunk.start),
@@ -256,8 +257,8 @@ impl Hierarchy {
                 .is_some_and(|end| end <= input.length);
             if bytes == 0 || !bytes.is_multiple_of(ENTRY as u64) || !is_there || bytes > room {
                 let what = format!(
-                    "the page of node {key} is said to have {bytes} bytes, expected entries of {ENTRY} bytes within \
-                     the {} of the file",
+                    "the page of node {key} is said to have {bytes} bytes, expected entries of \
+                     {ENTRY} bytes within the {} of the file",
                     input.length
                 );
                 return Err(damaged(what, format!("byte {start}")));
