@@ -1,5 +1,6 @@
 //! What formats are made of: files and outputs, numbers and rows of text.
 
+pub(crate) mod appended;
 pub(crate) mod contain;
 pub(crate) mod csv;
 pub(crate) mod decimal;

@@ -7,6 +7,7 @@ use super::listing::Listing;
 use crate::data::Bounds;
 use crate::error::{Error, Result};
 use crate::io::Destination;
+use crate::io::bytes::appended::appended;
 
 /// Writes the triangles, and their origin as three numbers in `TARGET.origin.txt`. Returns the
 /// origin and the path of that file.
@@ -119,9 +120,7 @@ pub(crate) fn describe(path: &Path) -> Result<Solid> {
 
 /// Returns the path of the file with the origin: `ground.stl` has `ground.stl.origin.txt`.
 fn origin_file(target: &Path) -> PathBuf {
-    let mut name = target.as_os_str().to_owned();
-    name.push(".origin.txt");
-    name.into()
+    appended(target, ".origin.txt")
 }
 
 fn read_origin(path: &Path) -> Result<Option<[f64; 3]>> {

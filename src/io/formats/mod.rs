@@ -20,6 +20,7 @@ pub(crate) use self::format::{FormatReader, PointWriter, WriteHeights, Writers};
 pub use self::table::FORMATS;
 pub(crate) use self::table::with_gdal;
 use crate::error::{Error, Result};
+use crate::io::bytes::appended::appended;
 
 /// Returns the format for writing a product, by the extension of the target.
 pub fn for_output(path: &Path, product: Product) -> Option<&'static Format> {
@@ -302,11 +303,7 @@ pub fn with_companions(
     let beside = companions.iter().map(|&companion| {
         let path = match companion.strip_prefix(extension) {
             // Appended to the whole name, whatever its case: `A.PNG.aux.xml`.
-            Some(behind) => {
-                let mut name = path.as_os_str().to_owned();
-                name.push(behind);
-                name.into()
-            }
+            Some(behind) => appended(path, behind),
             None => path.with_extension(companion),
         };
         (path, companion)

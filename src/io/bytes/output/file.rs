@@ -106,22 +106,12 @@ impl Output {
         }
     }
 
-    /// Returns the path of the hidden file, for formats that a library writes by path; `None` if
-    /// the output is a pipe or a device.
+    /// Returns the path of the hidden file, for formats that a library writes by path, and that of
+    /// the file which it replaces, behind all links; `None` if the output is a pipe or a device.
     #[cfg(feature = "gpkg")]
-    pub(crate) fn hidden_path(&self) -> Option<&Path> {
+    pub(crate) fn paths(&self) -> Option<(&Path, &Path)> {
         match &self.sink {
-            Sink::Renamed(temporary, _) => Some(temporary.path()),
-            Sink::Stream | Sink::Copied(_) => None,
-        }
-    }
-
-    /// Returns the path of the file that is replaced, behind all links; `None` if the output is a
-    /// pipe or a device.
-    #[cfg(feature = "gpkg")]
-    pub(crate) fn replaced_path(&self) -> Option<&Path> {
-        match &self.sink {
-            Sink::Renamed(_, path) => Some(path),
+            Sink::Renamed(temporary, path) => Some((temporary.path(), path)),
             Sink::Stream | Sink::Copied(_) => None,
         }
     }

@@ -6,6 +6,7 @@ use super::image::{Image, Packed, RasterSummary, Tiling};
 use super::overview::Halved;
 use crate::data::{BlockSource, Frame};
 use crate::error::Result;
+use crate::io::bytes::appended::appended;
 use crate::io::bytes::watch::unwatched;
 use crate::io::{Destination, Output, Watch};
 
@@ -107,12 +108,7 @@ pub fn write<'a>(
     let path = target.path().to_path_buf();
     let (summary, output) = write().map_err(|e| e.in_file(&path))?;
     // Overviews and statistics of a previous raster would be attributed to this one.
-    let beside = ["ovr", "aux.xml"].map(|extension| {
-        let mut name = path.as_os_str().to_owned();
-        name.push(".");
-        name.push(extension);
-        name.into()
-    });
+    let beside = [".ovr", ".aux.xml"].map(|end| appended(&path, end));
     target.put_all([], output, beside)?;
     Ok(summary)
 }

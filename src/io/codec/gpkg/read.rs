@@ -2,7 +2,7 @@
 
 use std::fs::File;
 use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use rusqlite::types::ValueRef;
 use rusqlite::{Connection, ErrorCode, OpenFlags, OptionalExtension, Row};
@@ -11,6 +11,7 @@ use super::geometry;
 use crate::crs::Crs;
 use crate::data::{Layer, Shape, Value};
 use crate::error::{Error, Result};
+use crate::io::bytes::appended::appended;
 use crate::io::bytes::field::{finite_or_none, not_a_number, parse_number};
 use crate::io::bytes::watch::Watch;
 use crate::io::options::layer::Options;
@@ -59,7 +60,7 @@ fn damaged(error: rusqlite::Error) -> Error {
 fn open(path: &Path) -> Result<Connection> {
     let changes = check_head(path)?;
     let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-    let has_log = std::fs::metadata(log_of(path)).is_ok_and(|log| log.len() > 0);
+    let has_log = std::fs::metadata(appended(path, "-wal")).is_ok_and(|log| log.len() > 0);
     // Without a log SQLite would write an empty one beside the file, and leave it there.
     let uri = (changes == Changes::InLog && !has_log).then(|| as_uri(path));
     let database = match uri.flatten() {
@@ -111,13 +112,6 @@ fn check_head(path: &Path) -> Result<Changes> {
         [2, 2] => Changes::InLog,
         _ => Changes::InFile,
     })
-}
-
-/// Returns the path of the log of a database.
-fn log_of(path: &Path) -> PathBuf {
-    let mut log = path.as_os_str().to_owned();
-    log.push("-wal");
-    log.into()
 }
 
 /// Returns a path as SQLite takes it with parameters.

@@ -1,7 +1,6 @@
 //! Writing: one layer to a new file.
 
 use std::collections::BTreeSet;
-use std::path::PathBuf;
 
 use rusqlite::types::{ToSql, ToSqlOutput, ValueRef};
 use rusqlite::{Connection, OpenFlags, Statement, params, params_from_iter};
@@ -11,6 +10,7 @@ use super::read::quoted;
 use crate::crs::Crs;
 use crate::data::{Bounds, ContourLine, Layer, Shape, ShapeKind, Value};
 use crate::error::{Error, Result};
+use crate::io::bytes::appended::appended;
 use crate::io::bytes::output::{Destination, is_stream};
 use crate::io::codec::contour_summary::ContourSummary;
 
@@ -282,7 +282,7 @@ fn write<T>(
         return Err(no_file());
     }
     let output = target.create()?;
-    let path = output.hidden_path().ok_or_else(no_file)?;
+    let (hidden, replaced) = output.paths().ok_or_else(no_file)?;
     let name = target.path().file_stem().unwrap_or_default();
     let name = name.to_string_lossy();
     // Names with these beginnings are those of the standard's own tables, and of SQLite's.
@@ -296,19 +296,14 @@ fn write<T>(
     };
     let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
     let write = || {
-        let database = Connection::open_with_flags(path, flags).map_err(unwritten)?;
+        let database = Connection::open_with_flags(hidden, flags).map_err(unwritten)?;
         let written = fill(&database, &name, head, add)?;
         database.close().map_err(|(_, error)| unwritten(error))?;
         Ok(written)
     };
     let written = write().map_err(|error: Error| error.in_file(target.path()))?;
-    // Changes that the file that is replaced was to have: SQLite would make them in the new one.
-    let replaced = output.replaced_path().unwrap_or(target.path()).as_os_str();
-    let stale = ["-wal", "-shm", "-journal"].map(|end| {
-        let mut path = replaced.to_owned();
-        path.push(end);
-        PathBuf::from(path)
-    });
+    // SQLite would make the pending changes of the replaced file in the new one.
+    let stale = ["-wal", "-shm", "-journal"].map(|end| appended(replaced, end));
     target.put_all([], output, stale)?;
     Ok(written)
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::crs::Crs;
 use crate::error::{Error, Result};
+use crate::io::bytes::appended::appended;
 use crate::io::codec::xml::{escaped, unescaped};
 
 /// Limit for the bytes of the file; a larger one contains statistics, which are not used.
@@ -12,9 +13,7 @@ const MAX_BYTES: u64 = 1 << 20;
 
 /// Returns the path of the auxiliary file of a picture: `relief.png` has `relief.png.aux.xml`.
 pub(crate) fn path_of(picture: &Path) -> PathBuf {
-    let mut name = picture.as_os_str().to_owned();
-    name.push(".aux.xml");
-    name.into()
+    appended(picture, ".aux.xml")
 }
 
 /// Returns the text of an auxiliary file that states the coordinate system, with x before y.
