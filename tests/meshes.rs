@@ -1,5 +1,8 @@
 //! Mesh files: written, read again, foreign, damaged.
 
+#[path = "common/bumps.rs"]
+mod bumps;
+
 use std::path::{Path, PathBuf};
 
 use breakline::crs::Crs;
@@ -8,25 +11,10 @@ use breakline::io::mesh;
 
 /// A bumpy field of `n` x `n` vertices at map coordinates, with a breakline through it.
 fn field(n: u32) -> Mesh {
-    let vertices = (0..n * n)
-        .map(|i| {
-            let (x, y) = (f64::from(i % n), f64::from(i / n));
-            [
-                512_000.1 + 1.3 * x,
-                5_403_000.7 + y / 3.0,
-                250.0 + (x * y / 7.0).sin(),
-            ]
-        })
-        .collect();
-    let mut faces = Vec::new();
-    for i in (0..n * (n - 1)).filter(|i| i % n < n - 1) {
-        faces.push([i, i + 1, i + n + 1]);
-        faces.push([i, i + n + 1, i + n]);
-    }
     let breakline: Vec<[u32; 2]> = (0..n - 1)
         .map(|i| [i * (n + 1), (i + 1) * (n + 1)])
         .collect();
-    Mesh::new(vertices, faces, &breakline, None).unwrap()
+    Mesh::new(bumps::vertices(n), bumps::faces(n, &[]), &breakline, None).unwrap()
 }
 
 /// The coordinates of a corner, and the kind of the edge that starts at it.

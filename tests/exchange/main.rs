@@ -5,6 +5,8 @@
 //! |---|---|
 //! | `BREAKLINE_MUTATIONS` | damaged files of each format |
 
+#[path = "../common/bumps.rs"]
+mod bumps;
 #[path = "../common/program.rs"]
 mod program;
 
@@ -15,5 +17,6 @@ mod dxf_read;
 mod landxml;
 mod matrix;
 mod model;
+mod refused;
 mod rounded;
 mod sample;

@@ -4,32 +4,19 @@
 use breakline::crs::Crs;
 use breakline::data::{EdgeKind, Mesh, Surface, Triangles};
 
+use crate::bumps;
+
 /// A field of 6 x 6 vertices at map coordinates, without the two cells in its middle.
 pub(crate) fn field(crs: Option<&str>) -> Mesh {
     let n = 6;
-    let vertices = (0..n * n)
-        .map(|i| {
-            let (x, y) = (f64::from(i % n), f64::from(i / n));
-            [
-                512_000.1 + 1.3 * x,
-                5_403_000.7 + y / 3.0,
-                250.0 + (x * y / 7.0).sin(),
-            ]
-        })
-        .collect();
-    let mut faces = Vec::new();
-    for i in (0..n * (n - 1)).filter(|i| i % n < n - 1 && ![14, 15].contains(i)) {
-        faces.push([i, i + 1, i + n + 1]);
-        faces.push([i, i + n + 1, i + n]);
-    }
     let kinds = EdgeKind::ALL
         .into_iter()
         .filter(|kind| kind.is_constrained());
     let lines = (0..5).flat_map(|i| [[i, i + 1], [i * n, (i + 1) * n]]);
     let lines = lines.zip(kinds.cycle()).collect();
     Mesh::of(Triangles {
-        vertices,
-        faces,
+        vertices: bumps::vertices(n),
+        faces: bumps::faces(n, &[14, 15]),
         lines,
         crs: crs.map(|text| Crs::from_user(text).unwrap()),
         ..Triangles::default()
