@@ -17,8 +17,8 @@ use crate::io::bytes::rows::{Row, Rows, shown};
 use crate::io::options::cut::open_line;
 use crate::io::{Destination, Watch};
 
-/// Writes triangles, then vertices: a file that was cut lacks vertices that are named before. There
-/// is no coordinate system.
+/// Writes triangles, then vertices: a file that is cut lacks vertices that triangles before them
+/// name. 2DM has no coordinate system.
 pub(crate) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> Result<Remarks> {
     let mut output = target.create()?;
     writeln!(output, "MESH2D")?;

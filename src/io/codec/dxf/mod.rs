@@ -73,7 +73,7 @@ pub(crate) fn write_surface(
     let at = |&v: &u32| mesh.surface.position(v);
     target.write_with(|out| {
         for line in crs_text::comments(crs) {
-            // Longer texts are no part of this release.
+            // This release has no longer texts.
             if line.len() < LONGEST {
                 writeln!(out, "999\n{line}")?;
             }

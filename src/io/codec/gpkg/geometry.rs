@@ -21,7 +21,7 @@ const TRIANGLE: u32 = 17;
 /// Adds the shapes of a geometry to a list: one, or one for each member of a collection.
 ///
 /// # Errors
-/// If the bytes are no geometry, or one of arcs.
+/// If the bytes are not a geometry, or it has arcs.
 pub(super) fn read(blob: &[u8], into: &mut Vec<Shape>) -> Result<()> {
     let mut bytes = Bytes { rest: blob };
     let header = bytes.take(4)?;
@@ -144,7 +144,7 @@ impl<'a> Bytes<'a> {
         (0..count).map(|_| self.vertex(head)).collect()
     }
 
-    /// Reads a point; an empty one has coordinates that are no numbers.
+    /// Reads a point; `None` for an empty one, whose coordinates are NaN.
     fn point(&mut self, head: Head) -> Result<Option<[f64; 3]>> {
         let vertex = self.vertex(head)?;
         Ok((!vertex[0].is_nan() || !vertex[1].is_nan()).then_some(vertex))

@@ -17,14 +17,14 @@ use crate::io::bytes::watch::Watch;
 use crate::io::options::layer::Options;
 use crate::io::options::layers::{Fields, warn_of_missing_heights};
 
-/// How each database begins.
+/// The first bytes of a database.
 const MAGIC: &[u8] = b"SQLite format 3\0";
 
-/// Records that are read between two looks at the watch.
+/// Records that are read between two calls of the watch.
 const RECORDS_AT_ONCE: usize = 1024;
 
-/// Reads a layer of a GeoPackage, watched; nothing is counted. Of a file with several layers one
-/// has to be named.
+/// Reads a layer of a GeoPackage, watched; nothing is counted. If there are several layers, one must
+/// be named.
 ///
 /// Polygons are oriented as in [`Shape::Polygon`]. The parts of a collection become separate
 /// shapes. Records come in the order of their identifiers, which are no attribute. Attributes of
@@ -277,8 +277,8 @@ impl Source {
         query
     }
 
-    /// Adds the shapes and the values of a record. Returns true if it lacks the height that the
-    /// attribute of the heights is to have.
+    /// Adds the shapes and the values of a record. Returns true if heights are in an attribute, and
+    /// it has no number there.
     fn add(&self, row: &Row, fields: &Fields, layer: &mut Layer) -> Result<bool> {
         let first = layer.shapes.len();
         match row.get_ref(0).map_err(damaged)? {

@@ -2,7 +2,7 @@ use crate::data::{not_finite, orientation};
 use crate::error::{Error, Result};
 use crate::triangulation::num::Sign;
 
-/// Polygons between two looks at a watch.
+/// Polygons that are read between two calls of a watch.
 pub(crate) const POLYGONS_AT_ONCE: usize = 1 << 16;
 
 /// Divides a polygon into a fan of triangles around one of its corners, and adds them to `faces`.

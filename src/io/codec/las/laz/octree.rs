@@ -1,7 +1,7 @@
 //! The octree of a COPC file (COPC 1.0): which chunk holds the points of which node.
 //!
 //! All pages of the hierarchy are read, 32 bytes for each node, so that each chunk is known to
-//! belong to one node: an index that forgets points is found out. The chunk table of LASzip says
+//! belong to one node: an index that omits points is noticed. The chunk table of LASzip says
 //! where chunks are; what the hierarchy says must agree.
 
 use std::collections::{HashMap, HashSet};
@@ -164,7 +164,7 @@ impl Octree {
         self.node(chunk).level
     }
 
-    /// Returns the first level on which points are at most so far apart.
+    /// Returns the first level on which points are at most `spacing` apart.
     ///
     /// # Errors
     /// If the file does not say how far apart they are.
