@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use serde_json::json;
+use serde_json::{Map, Value, json};
 
 use super::listing::loss::Loss;
 use super::listing::{Listing, Remarks};
@@ -26,17 +26,16 @@ pub(crate) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> R
     let lattice = Lattice::of(&bounds, crs)?;
     let name = target.path().file_stem().unwrap_or_default();
     let name = name.to_string_lossy();
-    let mut metadata = json!({});
-    if let Some(metadata) = metadata.as_object_mut() {
-        if !bounds.is_empty() {
-            let extent = [bounds.min, bounds.max].concat();
-            metadata.insert("geographicalExtent".to_owned(), json!(extent));
-        }
-        if let Some(code) = crs.and_then(|crs| crs.epsg) {
-            let system = format!("https://www.opengis.net/def/crs/EPSG/0/{code}");
-            metadata.insert("referenceSystem".to_owned(), json!(system));
-        }
+    let mut metadata = Map::new();
+    if !bounds.is_empty() {
+        let extent = [bounds.min, bounds.max].concat();
+        metadata.insert("geographicalExtent".to_owned(), json!(extent));
     }
+    if let Some(code) = crs.and_then(|crs| crs.epsg) {
+        let system = format!("https://www.opengis.net/def/crs/EPSG/0/{code}");
+        metadata.insert("referenceSystem".to_owned(), json!(system));
+    }
+    let metadata = Value::Object(metadata);
     let Lattice { step, origin } = lattice;
     let transform = json!({ "scale": step, "translate": origin });
     let mut output = target.create()?;
