@@ -129,7 +129,7 @@ pub(super) struct Packed {
     lengths: Vec<u32>,
     /// Where the tiles begin, and where they end.
     tiles: Range<u64>,
-    summary: RasterSummary,
+    pub(super) summary: RasterSummary,
 }
 
 impl Image {
@@ -184,11 +184,7 @@ impl Packed {
             starts: vec![0; tiling.count],
             lengths: vec![0; tiling.count],
             tiles: 0..0,
-            summary: RasterSummary {
-                min: f64::INFINITY,
-                max: f64::NEG_INFINITY,
-                valid: 0,
-            },
+            summary: RasterSummary::default(),
         };
         let head = |image: &Packed| {
             directory::header(offsets, &[image.tags(source, cells, image.tiles.start)])
@@ -244,19 +240,6 @@ impl Packed {
             self.summary.max = self.summary.max.max(f64::from(tile.max));
         }
         Ok(())
-    }
-
-    /// Returns what the cells are.
-    pub(super) fn summary(&self) -> RasterSummary {
-        let RasterSummary { min, max, valid } = self.summary;
-        match valid {
-            0 => RasterSummary {
-                min: f64::NAN,
-                max: f64::NAN,
-                valid,
-            },
-            _ => RasterSummary { min, max, valid },
-        }
     }
 
     /// Returns the bytes of all tiles.

@@ -21,6 +21,7 @@ const EFFORT: u32 = 1;
 pub(super) struct Tile {
     /// Compressed bytes; empty if nothing is stored of any cell.
     pub(super) bytes: Vec<u8>,
+    /// The number of cells with a value, the smallest value and the largest; NaN if there is none.
     pub(super) valid: u64,
     pub(super) min: f32,
     pub(super) max: f32,
@@ -48,8 +49,8 @@ impl TileBuffers {
         let mut tile = Tile {
             bytes: Vec::new(),
             valid: 0,
-            min: f32::INFINITY,
-            max: f32::NEG_INFINITY,
+            min: f32::NAN,
+            max: f32::NAN,
         };
         for cell in &mut self.cells {
             *cell = format.written(*cell);

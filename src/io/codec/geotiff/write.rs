@@ -165,7 +165,7 @@ fn write_levels(
     if levels(source.frame(), &options).nth(1).is_none() {
         let mut output = target.create_seekable()?;
         let packed = Packed::write(&mut output, source, cells, offsets, watch)?;
-        return Ok((packed.summary(), output));
+        return Ok((packed.summary, output));
     }
     let mut output = target.create()?;
     let mut images = vec![Image::pack(target, source, cells, watch)?];
@@ -196,7 +196,7 @@ fn write_levels(
         .iter_mut()
         .rev()
         .try_for_each(|image| image.copy_to(&mut output, watch))?;
-    Ok((images[0].packed.summary(), output))
+    Ok((images[0].packed.summary, output))
 }
 
 #[cfg(test)]
