@@ -406,15 +406,12 @@ fn what_is_wrong_with_an_index_is_named() {
     );
 }
 
-struct Folder(tempfile::TempDir);
-
-impl Folder {
-    fn with(name: &str, bytes: &[u8]) -> (Self, PathBuf) {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join(name);
-        std::fs::write(&path, bytes).unwrap();
-        (Folder(folder), path)
-    }
+/// A folder with one file, and the path of that.
+fn folder_of(name: &str, bytes: &[u8]) -> (tempfile::TempDir, PathBuf) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(name);
+    std::fs::write(&path, bytes).unwrap();
+    (folder, path)
 }
 
 /// The file without its index, as LAZ.
@@ -434,8 +431,8 @@ fn copy(request: &PointsRequest, target: &Path) -> breakline::Result<PointsRepor
 #[test]
 fn the_points_written_are_those_of_a_file_without_an_index() {
     let file = file_of(3_000);
-    let (folder, path) = Folder::with("a.copc.laz", &file.bytes);
-    let without = folder.0.path().join("b.laz");
+    let (folder, path) = folder_of("a.copc.laz", &file.bytes);
+    let without = folder.path().join("b.laz");
     std::fs::write(&without, plain(&file)).unwrap();
     for (i, window) in windows().into_iter().enumerate() {
         let request = |file: &Path| PointsRequest {
@@ -443,7 +440,7 @@ fn the_points_written_are_those_of_a_file_without_an_index() {
             bounds: Some(window),
             ..PointsRequest::default()
         };
-        let [a, b] = ["a", "b"].map(|name| folder.0.path().join(format!("{name}{i}.laz")));
+        let [a, b] = ["a", "b"].map(|name| folder.path().join(format!("{name}{i}.laz")));
         match (copy(&request(&path), &a), copy(&request(&without), &b)) {
             (Ok(fewer), Ok(all)) => {
                 assert_eq!(fewer.written, all.written);
@@ -469,7 +466,7 @@ fn the_points_written_are_those_of_a_file_without_an_index() {
 #[test]
 fn the_level_is_an_option_of_reading() {
     let file = file_of(5000);
-    let (folder, path) = Folder::with("a.copc.laz", &file.bytes);
+    let (folder, path) = folder_of("a.copc.laz", &file.bytes);
     let read = |resolution| points::Options {
         resolution,
         ..points::Options::default()
@@ -494,7 +491,7 @@ fn the_level_is_an_option_of_reading() {
             .unwrap_err();
         assert_eq!(error.kind(), Kind::Usage);
     }
-    let without = folder.0.path().join("b.laz");
+    let without = folder.path().join("b.laz");
     std::fs::write(&without, plain(&file)).unwrap();
     let error = read_points(&request(&without), &Context::default())
         .map(|_| ())
@@ -506,8 +503,8 @@ fn the_level_is_an_option_of_reading() {
 #[test]
 fn surfaces_within_bounds_are_those_of_a_file_without_an_index() {
     let file = file_of(3_000);
-    let (folder, _) = Folder::with("a.copc.laz", &file.bytes);
-    std::fs::write(folder.0.path().join("b.laz"), plain(&file)).unwrap();
+    let (folder, _) = folder_of("a.copc.laz", &file.bytes);
+    std::fs::write(folder.path().join("b.laz"), plain(&file)).unwrap();
     for (i, bounds) in ["0,505,4,509", "-9,500.5,-8,501.25", "10,520,30,540"]
         .iter()
         .enumerate()
@@ -516,7 +513,7 @@ fn surfaces_within_bounds_are_those_of_a_file_without_an_index() {
         for class in ["--class=all", "--class=2"] {
             let tin = |input: &str, output: &str| {
                 let run = run_in(
-                    &folder.0,
+                    &folder,
                     &[
                         "tin",
                         input,
@@ -531,7 +528,7 @@ fn surfaces_within_bounds_are_those_of_a_file_without_an_index() {
                     ],
                 );
                 run.works(&[]);
-                (run, std::fs::read(folder.0.path().join(output)).unwrap())
+                (run, std::fs::read(folder.path().join(output)).unwrap())
             };
             let (run, part) = tin("a.copc.laz", "a.ply");
             let (_, all) = tin("b.laz", "b.ply");
@@ -545,8 +542,8 @@ fn surfaces_within_bounds_are_those_of_a_file_without_an_index() {
 #[test]
 fn the_program_takes_a_level() {
     let file = file_of(5000);
-    let (folder, _) = Folder::with("a.copc.laz", &file.bytes);
-    std::fs::write(folder.0.path().join("b.laz"), plain(&file)).unwrap();
+    let (folder, _) = folder_of("a.copc.laz", &file.bytes);
+    std::fs::write(folder.path().join("b.laz"), plain(&file)).unwrap();
     let root = file
         .nodes
         .iter()
@@ -554,7 +551,7 @@ fn the_program_takes_a_level() {
         .unwrap()
         .points;
     let info = ["info", "a.copc.laz", "--copc-resolution", "100"];
-    let run = run_in(&folder.0, &info);
+    let run = run_in(&folder, &info);
     assert!(
         run.stdout.contains(&format!(" {root} points")),
         "{}{}",
@@ -569,11 +566,11 @@ fn the_program_takes_a_level() {
         "-o",
         "c.laz",
     ];
-    run_in(&folder.0, &points).works(&[&format!("{root} points of {root}")]);
+    run_in(&folder, &points).works(&[&format!("{root} points of {root}")]);
     let without = ["points", "b.laz", "--copc-resolution", "100", "-o", "d.laz"];
-    run_in(&folder.0, &without).fails(2, &["b.laz: the file has no octree", "--copc-resolution"]);
+    run_in(&folder, &without).fails(2, &["b.laz: the file has no octree", "--copc-resolution"]);
     let zero = ["info", "a.copc.laz", "--copc-resolution", "0"];
-    run_in(&folder.0, &zero).fails(2, &["is not above zero"]);
+    run_in(&folder, &zero).fails(2, &["is not above zero"]);
 }
 
 /// Files of other programs agree with their own index.
