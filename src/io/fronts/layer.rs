@@ -170,10 +170,14 @@ pub fn write_lines<'a>(target: impl Into<Destination<'a>>, layer: &Layer) -> Res
 
 /// Returns the error for formats that only GDAL may read.
 fn unsupported(path: &Path) -> Error {
-    Error::unsupported(match gpkg::IS_AVAILABLE {
-        true => "not a vector format of this build, which reads shapefiles (.shp), GeoJSON (.geojson), GeoPackage (.gpkg) and DXF",
-        false => "not a vector format of this build, which reads shapefiles (.shp), GeoJSON (.geojson) and DXF",
-    })
+    let package = match gpkg::IS_AVAILABLE {
+        true => ", GeoPackage (.gpkg)",
+        false => "",
+    };
+    Error::unsupported(format!(
+        "not a vector format of this build, which reads shapefiles (.shp), GeoJSON (.geojson)\
+         {package} and DXF"
+    ))
     .in_file(path)
     .cure(wording![
         "build with ",
