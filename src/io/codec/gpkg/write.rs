@@ -130,9 +130,12 @@ pub fn write_contours<'a>(
     crs: Option<&Crs>,
 ) -> Result<ContourSummary> {
     let head = Head {
-        kind: Kind::Line,
-        is_multiple: false,
-        has_heights: true,
+        form: Form {
+            kind: Kind::Line,
+            is_multiple: false,
+            has_heights: true,
+            system: system_of(crs),
+        },
         columns: vec![("ID".to_owned(), "INTEGER"), ("ELEV".to_owned(), "REAL")],
         crs,
     };
@@ -175,12 +178,16 @@ pub fn write_lines<'a>(target: impl Into<Destination<'a>>, layer: &Layer) -> Res
             .cure("write GeoJSON, or remove attributes"));
     }
     let shapes = || layer.shapes.iter();
+    let crs = layer.crs.as_ref();
     let head = Head {
-        kind: kind(layer),
-        is_multiple: shapes().any(|shape| geometry::parts(shape) > 1),
-        has_heights: shapes().flat_map(Shape::vertices).any(|p| p[2].is_finite()),
+        form: Form {
+            kind: kind(layer),
+            is_multiple: shapes().any(|shape| geometry::parts(shape) > 1),
+            has_heights: shapes().flat_map(Shape::vertices).any(|p| p[2].is_finite()),
+            system: system_of(crs),
+        },
         columns,
-        crs: layer.crs.as_ref(),
+        crs,
     };
     write(target, &head, |out| {
         for (i, shape) in shapes().enumerate() {
@@ -253,9 +260,7 @@ fn type_of<'a>(mut values: impl Iterator<Item = &'a Value>) -> &'static str {
 
 /// What is known of a layer before its records.
 struct Head<'a> {
-    kind: Kind,
-    is_multiple: bool,
-    has_heights: bool,
+    form: Form,
     columns: Vec<(String, &'static str)>,
     crs: Option<&'a Crs>,
 }
@@ -316,13 +321,8 @@ fn fill<T>(
     add: impl FnOnce(&mut Records) -> Result<T>,
 ) -> Result<T> {
     database.execute_batch(BEGIN).map_err(unwritten)?;
-    let system = add_systems(database, head.crs)?;
-    let form = Form {
-        kind: head.kind,
-        is_multiple: head.is_multiple,
-        has_heights: head.has_heights,
-        system,
-    };
+    let form = head.form;
+    add_systems(database, head.crs, form.system)?;
     let (table, index) = (quoted(name), quoted(&format!("rtree_{name}_{GEOMETRY}")));
     let columns = head.columns.iter();
     let columns: String = columns
@@ -361,13 +361,13 @@ fn fill<T>(
                 known(min[1]),
                 known(max[0]),
                 known(max[1]),
-                system
+                form.system
             ],
         )
         .and_then(|_| {
             database.execute(
                 "INSERT INTO gpkg_geometry_columns VALUES (?, ?, ?, ?, ?, 0)",
-                params![name, GEOMETRY, form.name(), system, head.has_heights],
+                params![name, GEOMETRY, form.name(), form.system, form.has_heights],
             )
         })
         .and_then(|_| {
@@ -411,9 +411,19 @@ fn triggers(name: &str, table: &str) -> String {
     triggers
 }
 
-/// Adds longitude and latitude, which each file has, and the system of the layer; returns the
-/// number of the latter.
-fn add_systems(database: &Connection, crs: Option<&Crs>) -> Result<i32> {
+/// Returns the number of the system of a layer in the file.
+fn system_of(crs: Option<&Crs>) -> i32 {
+    let Some(crs) = crs else {
+        return UNKNOWN_SYSTEM;
+    };
+    // The code is that of the plan: heights of a stated system are in the text alone.
+    let code = crs.epsg.filter(|_| crs.vertical_unit.is_none());
+    let code = code.and_then(|code| i32::try_from(code).ok());
+    code.unwrap_or(OWN_SYSTEM)
+}
+
+/// Adds longitude and latitude, which each file has, and the system of the layer with its number.
+fn add_systems(database: &Connection, crs: Option<&Crs>, number: i32) -> Result<()> {
     let add = |crs: &Crs, number: i32| {
         let organization = match number {
             OWN_SYSTEM => "NONE",
@@ -424,15 +434,8 @@ fn add_systems(database: &Connection, crs: Option<&Crs>) -> Result<i32> {
         database.execute(add, values).map_err(unwritten)
     };
     add(&Crs::from_epsg(4326)?, 4326)?;
-    let Some(crs) = crs else {
-        return Ok(UNKNOWN_SYSTEM);
-    };
-    // The code is that of the plan: heights of a stated system are in the text alone.
-    let code = crs.epsg.filter(|_| crs.vertical_unit.is_none());
-    let code = code.and_then(|code| i32::try_from(code).ok());
-    let number = code.unwrap_or(OWN_SYSTEM);
-    add(crs, number)?;
-    Ok(number)
+    crs.map_or(Ok(0), |crs| add(crs, number))?;
+    Ok(())
 }
 
 /// The records of a layer while they are written.
