@@ -23,8 +23,8 @@ const MAGIC: &[u8] = b"SQLite format 3\0";
 /// Records that are read between two calls of the watch.
 const RECORDS_AT_ONCE: usize = 1024;
 
-/// Reads a layer of a GeoPackage, watched; nothing is counted. If there are several layers, one must
-/// be named.
+/// Reads a layer of a GeoPackage, watched; nothing is counted. If there are several layers, one
+/// must be named.
 ///
 /// Polygons are oriented as in [`Shape::Polygon`]. The parts of a collection become separate
 /// shapes. Records come in the order of their identifiers, which are no attribute. Attributes of
