@@ -45,6 +45,7 @@ mod points;
 mod profile;
 mod ramp;
 pub mod returns;
+mod same_faces;
 mod shape;
 mod surface;
 mod surface_facts;
@@ -73,6 +74,7 @@ pub use points::{
 pub use profile::{LinePoint, Profile, Profiles, Station, Stretch};
 pub use ramp::{ColorMatch, ColorRamp, ColorStop, Colors, Rgba, StopAt};
 pub use returns::Return;
+pub(crate) use same_faces::same_faces;
 pub use shape::{Column, Layer, Shape, ShapeKind};
 pub(crate) use shape::{doubled_area, oriented, polygons};
 pub use surface::{BaseFace, Census, EdgeKind, Face, FaceAcross, LineEdges, Surface};

@@ -1,8 +1,6 @@
 use std::io::Write;
-use std::ops::Range;
 
-use super::{Census, EdgeKind, FaceAcross, LineEdges, Surface};
-use crate::crs::Crs;
+use super::{Census, EdgeKind, FaceAcross, LineEdges, Surface, same_faces};
 use crate::error::{Error, Result, Setting, wording};
 
 /// A surface without its lines: what programs read that know vertices and triangles only.
@@ -10,20 +8,10 @@ use crate::error::{Error, Result, Setting, wording};
 pub struct WithoutLines<'a>(pub &'a dyn Surface);
 
 impl Surface for WithoutLines<'_> {
-    fn vertex_count(&self) -> usize {
-        self.0.vertex_count()
-    }
+    same_faces!(0);
 
     fn position(&self, vertex: u32) -> [f64; 3] {
         self.0.position(vertex)
-    }
-
-    fn face_count(&self) -> usize {
-        self.0.face_count()
-    }
-
-    fn face(&self, face: u32) -> Option<[u32; 3]> {
-        self.0.face(face)
     }
 
     fn neighbor(&self, face: u32, i: usize) -> Option<u32> {
@@ -53,14 +41,6 @@ impl Surface for WithoutLines<'_> {
         self.0.faces_at(q, near, faces)
     }
 
-    fn crs(&self) -> Option<&Crs> {
-        self.0.crs()
-    }
-
-    fn ensure_intact(&self) -> Result<()> {
-        self.0.ensure_intact()
-    }
-
     fn write_tin(&self, _out: &mut dyn Write) -> Result<()> {
         Err(
             Error::usage("a .tin holds the triangulation with its lines").cure(wording![
@@ -76,9 +56,5 @@ impl Surface for WithoutLines<'_> {
             lines: LineEdges::default(),
             ..self.0.census()
         }
-    }
-
-    fn corners_in(&self, range: Range<u32>, out: &mut Vec<(u32, [u32; 3])>) {
-        self.0.corners_in(range, out);
     }
 }

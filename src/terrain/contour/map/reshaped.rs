@@ -1,8 +1,8 @@
 //! Surfaces with the triangles of another one.
 
-use crate::crs::Crs;
-use crate::data::{EdgeKind, Surface};
-use crate::error::Result;
+use std::ops::Range;
+
+use crate::data::{EdgeKind, Face, Surface, same_faces};
 
 /// A surface with other heights.
 pub(super) struct Reshaped<'a> {
@@ -11,23 +11,26 @@ pub(super) struct Reshaped<'a> {
     pub(super) heights: Vec<f64>,
 }
 
-impl Surface for Reshaped<'_> {
-    fn vertex_count(&self) -> usize {
-        self.surface.vertex_count()
+impl Reshaped<'_> {
+    /// Calls `take` with each face in a range of numbers and its corners.
+    fn each_in(&self, numbers: Range<u32>, take: impl FnMut((u32, [u32; 3]))) {
+        let mut faces = Vec::with_capacity(numbers.len());
+        self.corners_in(numbers, &mut faces);
+        faces.into_iter().for_each(take);
     }
+
+    fn height(&self, vertex: u32) -> f64 {
+        let height = self.heights.get(vertex as usize).copied();
+        height.unwrap_or_else(|| self.surface.position(vertex)[2])
+    }
+}
+
+impl Surface for Reshaped<'_> {
+    same_faces!(surface);
 
     fn position(&self, vertex: u32) -> [f64; 3] {
-        let [x, y, z] = self.surface.position(vertex);
-        let height = self.heights.get(vertex as usize);
-        [x, y, height.copied().unwrap_or(z)]
-    }
-
-    fn face_count(&self) -> usize {
-        self.surface.face_count()
-    }
-
-    fn face(&self, face: u32) -> Option<[u32; 3]> {
-        self.surface.face(face)
+        let [x, y, _] = self.surface.position(vertex);
+        [x, y, self.height(vertex)]
     }
 
     fn neighbor(&self, face: u32, i: usize) -> Option<u32> {
@@ -46,12 +49,28 @@ impl Surface for Reshaped<'_> {
         self.surface.least_width()
     }
 
-    fn crs(&self) -> Option<&Crs> {
-        self.surface.crs()
+    fn triangles_in(&self, numbers: Range<u32>, triangles: &mut Vec<(u32, [[f64; 3]; 3])>) {
+        self.each_in(numbers, |(face, corners)| {
+            triangles.push((face, corners.map(|v| self.position(v))));
+        });
     }
 
-    fn ensure_intact(&self) -> Result<()> {
-        self.surface.ensure_intact()
+    fn faces_in(&self, numbers: Range<u32>, faces: &mut Vec<Face>) {
+        self.surface.faces_in(numbers, faces);
+    }
+
+    fn heights_in(
+        &self,
+        numbers: Range<u32>,
+        is_wanted: &dyn Fn(f64, f64) -> bool,
+        faces: &mut Vec<(u32, [f64; 3])>,
+    ) {
+        self.each_in(numbers, |(face, corners)| {
+            let [a, b, c] = corners.map(|v| self.height(v));
+            if is_wanted(a.min(b).min(c), a.max(b).max(c)) {
+                faces.push((face, [a, b, c]));
+            }
+        });
     }
 }
 
@@ -66,20 +85,10 @@ pub(super) fn is_held(surface: &dyn Surface, face: u32, i: usize) -> bool {
 pub(super) struct Divided<'a>(pub(super) &'a dyn Surface);
 
 impl Surface for Divided<'_> {
-    fn vertex_count(&self) -> usize {
-        self.0.vertex_count()
-    }
+    same_faces!(0);
 
     fn position(&self, vertex: u32) -> [f64; 3] {
         self.0.position(vertex)
-    }
-
-    fn face_count(&self) -> usize {
-        self.0.face_count()
-    }
-
-    fn face(&self, face: u32) -> Option<[u32; 3]> {
-        self.0.face(face)
     }
 
     fn neighbor(&self, face: u32, i: usize) -> Option<u32> {
@@ -89,13 +98,5 @@ impl Surface for Divided<'_> {
 
     fn edge_kind(&self, face: u32, i: usize) -> EdgeKind {
         self.0.edge_kind(face, i)
-    }
-
-    fn crs(&self) -> Option<&Crs> {
-        self.0.crs()
-    }
-
-    fn ensure_intact(&self) -> Result<()> {
-        self.0.ensure_intact()
     }
 }
