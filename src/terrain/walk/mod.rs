@@ -1,6 +1,7 @@
 //! What of a surface is at a position, and along a line.
 
 mod follow;
+mod ground;
 mod hints;
 mod linked;
 mod rim;
@@ -10,16 +11,12 @@ mod stepped;
 mod stretches;
 mod turns;
 
-use self::follow::Follow;
-use self::hints::Hints;
+use self::ground::Ground;
 pub(in crate::terrain) use self::linked::{Arrival, follow_linked};
-use self::rim::{RimEdge, on_rim};
-use self::segment::Segment;
 pub(in crate::terrain) use self::step::At;
 use self::step::Steps;
 pub(crate) use self::stepped::stepped;
-use self::turns::{Ground, in_turns};
-use super::boxes::Boxes;
+use self::turns::in_turns;
 use super::linear::gradient;
 use crate::data::{Stretch, Surface};
 use crate::error::Result;
@@ -44,9 +41,7 @@ use crate::error::Result;
 /// # Ok::<(), breakline::Error>(())
 /// ```
 pub struct Locator<'a> {
-    surface: &'a dyn Surface,
-    hints: Hints,
-    rim: Boxes<RimEdge>,
+    ground: Ground<'a>,
 }
 
 impl<'a> Locator<'a> {
@@ -67,13 +62,9 @@ impl<'a> Locator<'a> {
     /// # Errors
     /// Those of [`new`](Self::new).
     pub(crate) fn prepared(surface: &'a dyn Surface, watched: &dyn Surface) -> Result<Self> {
-        let (hints, rim) = Hints::new(watched);
+        let ground = Ground::new(surface, watched);
         surface.ensure_intact()?;
-        Ok(Locator {
-            surface,
-            hints,
-            rim,
-        })
+        Ok(Locator { ground })
     }
 
     /// Returns the height at a position, linear on the face there, on its edge, or that of a
@@ -82,8 +73,8 @@ impl<'a> Locator<'a> {
     /// # Complexity
     /// Constant for an ordinary surface.
     pub fn height(&self, q: [f64; 2]) -> Option<f64> {
-        let mut steps = Steps::new(self.surface);
-        let at = self.locate(q, &mut steps);
+        let mut steps = Steps::new(self.ground.surface);
+        let at = self.ground.locate(q, &mut steps);
         steps.point(at, q).map(|[_, _, z]| z)
     }
 
@@ -93,11 +84,11 @@ impl<'a> Locator<'a> {
     /// # Complexity
     /// That of [`height`](Self::height).
     pub fn face(&self, q: [f64; 2]) -> Option<u32> {
-        match self.locate(q, &mut Steps::new(self.surface)) {
+        match self.at(q) {
             At::Off => None,
             At::Inside { face } => Some(face),
             At::Edge { face, corner } => {
-                let other = self.surface.neighbor(face, corner);
+                let other = self.ground.surface.neighbor(face, corner);
                 Some(other.map_or(face, |other| other.min(face)))
             }
             At::Vertex { face, .. } => Some(face),
@@ -110,7 +101,8 @@ impl<'a> Locator<'a> {
     /// # Complexity
     /// That of [`height`](Self::height).
     pub fn gradient(&self, q: [f64; 2]) -> Option<[f64; 2]> {
-        self.surface.triangle(self.face(q)?).map(gradient)
+        let face = self.face(q)?;
+        self.ground.surface.triangle(face).map(gradient)
     }
 
     /// Returns the parts of a line that are on the surface, in order.
@@ -143,12 +135,7 @@ impl<'a> Locator<'a> {
     /// answers for one line, others go on.
     pub fn along_each<L: AsRef<[[f64; 2]]>>(&self, lines: &[L]) -> Result<Vec<Vec<Stretch>>> {
         let lines: Vec<&[[f64; 2]]> = lines.iter().map(AsRef::as_ref).collect();
-        let ground = Ground {
-            surface: self.surface,
-            rim: &self.rim,
-            locate: &|q, steps| self.locate(q, steps),
-        };
-        in_turns(&ground, &lines)
+        in_turns(&self.ground, &lines)
     }
 
     /// Returns where on the surface a position is.
@@ -156,30 +143,6 @@ impl<'a> Locator<'a> {
     /// # Complexity
     /// That of [`height`](Self::height).
     pub(in crate::terrain) fn at(&self, q: [f64; 2]) -> At {
-        self.locate(q, &mut Steps::new(self.surface))
-    }
-
-    /// Returns where a position is, by a walk from a face near to it.
-    fn locate(&self, q: [f64; 2], steps: &mut Steps<'_>) -> At {
-        if !q.iter().all(|c| c.is_finite()) {
-            return At::Off;
-        }
-        let hint = self.hints.near(q);
-        let Some((face, corners)) = hint.and_then(|f| Some((f, self.surface.triangle(f)?))) else {
-            return At::Off;
-        };
-        let start = At::Vertex { face, corner: 0 };
-        let at = match Segment::new([corners[0][0], corners[0][1]], q) {
-            None => start,
-            Some(segment) => Follow::new(steps, segment, start, &mut |_| ()).go_to_end(
-                steps,
-                &self.rim,
-                &mut |_| (),
-            ),
-        };
-        match at {
-            At::Off => on_rim(self.surface, &self.rim, q),
-            at => at,
-        }
+        self.ground.locate(q, &mut Steps::new(self.ground.surface))
     }
 }

@@ -1,26 +1,17 @@
 //! Several lines that are followed in turns.
 
 use super::follow::Follow;
-use super::rim::RimEdge;
+use super::ground::Ground;
 use super::segment::Segment;
 use super::step::{At, Exit, Steps};
 use super::stretches::Stretches;
-use crate::data::{FaceAcross, Stretch, Surface};
+use crate::data::{FaceAcross, Stretch};
 use crate::error::{Error, Result};
-use crate::terrain::boxes::Boxes;
 
 /// How many lines take turns.
 ///
 /// `PERF:` memory answers within the time that this many crossings take.
 const AT_ONCE: usize = 8;
-
-/// The surface that lines are followed over.
-pub(super) struct Ground<'a> {
-    pub(super) surface: &'a dyn Surface,
-    pub(super) rim: &'a Boxes<RimEdge>,
-    /// Returns where a position is.
-    pub(super) locate: &'a dyn Fn([f64; 2], &mut Steps<'_>) -> At,
-}
 
 /// Returns the parts of each line that are on a surface.
 ///
@@ -117,7 +108,7 @@ impl<'a> Walk<'a> {
         loop {
             let mut take = |point| self.found.take(point);
             if let Some(follow) = &mut self.follow {
-                match follow.next_edge(&mut self.steps, ground.rim, &mut take) {
+                match follow.next_edge(&mut self.steps, &ground.rim, &mut take) {
                     Ok(exit) => {
                         self.exit = Some(exit);
                         return Ok(());
@@ -136,7 +127,7 @@ impl<'a> Walk<'a> {
             self.steps = Steps::new(ground.surface);
             let start = match self.at {
                 Some(at) => at,
-                None => (ground.locate)(from, &mut self.steps),
+                None => ground.locate(from, &mut self.steps),
             };
             self.found.begin(&segment);
             let mut take = |point| self.found.take(point);
