@@ -61,6 +61,11 @@ impl Bounds {
         }
     }
 
+    /// Returns the largest amount of a coordinate on an axis; infinity if the box is empty.
+    pub(crate) fn largest(&self, axis: usize) -> f64 {
+        self.min[axis].abs().max(self.max[axis].abs())
+    }
+
     /// Returns true if the box contains no position in plan.
     pub fn is_empty(&self) -> bool {
         !(self.min[0] <= self.max[0] && self.min[1] <= self.max[1])

@@ -78,7 +78,7 @@ pub(crate) use same_faces::same_faces;
 pub use shape::{Column, Layer, Shape, ShapeKind};
 pub(crate) use shape::{doubled_area, oriented, polygons};
 pub use surface::{BaseFace, Census, EdgeKind, Face, FaceAcross, LineEdges, Surface};
-pub(crate) use surface::{across, corners, faces, faces_under, map_batches};
+pub(crate) use surface::{across, bounds_of_faces, corners, faces, faces_under, map_batches};
 pub use surface_facts::SurfaceFacts;
 pub use triangles::{LinkFlaw, Triangles};
 pub use without_lines::WithoutLines;

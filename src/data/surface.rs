@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
+use super::Bounds;
 use crate::crs::Crs;
 use crate::error::{Error, Result};
 
@@ -529,6 +530,26 @@ pub(crate) fn map_batches<T, R: Send, E: Send>(
         ready = following;
     }
     ready.into_iter().try_for_each(take)
+}
+
+/// Returns the box around the faces of a surface.
+///
+/// # Complexity
+/// Linear, on all threads.
+pub(crate) fn bounds_of_faces(surface: &dyn Surface) -> Bounds {
+    let mut all = Bounds::default();
+    let ask = |numbers, triangles: &mut _| surface.triangles_in(numbers, triangles);
+    let make = |triangles: &[(u32, [[f64; 3]; 3])]| {
+        let mut bounds = Bounds::default();
+        let corners = triangles.iter().flat_map(|(_, corners)| corners);
+        corners.for_each(|&corner| bounds.add(corner));
+        bounds
+    };
+    let Ok(()) = map_batches(surface.face_count(), ask, make, |bounds| {
+        all.merge(&bounds);
+        Ok::<(), Infallible>(())
+    });
+    all
 }
 
 /// All faces of a surface with their corners, in order of their numbers.

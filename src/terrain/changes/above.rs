@@ -4,12 +4,12 @@ use rayon::prelude::*;
 
 use super::apart::Apart;
 use super::area::ChangedArea;
-use crate::data::{Surface, corners};
+use crate::data::{Surface, bounds_of_faces, corners};
 use crate::error::Result;
 use crate::terrain::contour::{Polygons, crossing};
 use crate::terrain::linear::plan;
 use crate::terrain::overlay::Corner;
-use crate::terrain::volume::{Around, Sum, Units, integral};
+use crate::terrain::volume::{Sum, Units, integral};
 
 /// Parts of faces that a thread takes at a time.
 const BATCH: usize = 1 << 10;
@@ -41,10 +41,11 @@ pub(super) fn above(
         *at = from_origin(*at);
     }
     let polygons = Polygons::new(&arcs)?;
-    let around = Around::faces_of(mesh);
+    let mut around = bounds_of_faces(mesh);
     // Volumes reach down to 0.
     let [x, y, _] = around.min;
-    let units = around.with([[x, y, 0.0]; 2]).units(1.0)?;
+    around.add([x, y, 0.0]);
+    let units = Units::within(&around, 1.0)?;
     let batches: Vec<Vec<Option<usize>>> = parts
         .par_chunks(BATCH)
         .map(|batch| {

@@ -8,8 +8,7 @@ use self::above::above;
 use self::apart::difference_over;
 pub use self::area::ChangedArea;
 use super::overlay::{Overlap, overlay};
-use super::volume::Around;
-use crate::data::Surface;
+use crate::data::{Surface, bounds_of_faces};
 use crate::error::{Error, Result};
 
 /// Differences that are this close to the height, relative to the largest height of the surfaces,
@@ -59,9 +58,8 @@ pub fn changed_areas(surfaces: [&dyn Surface; 2], height: f64) -> Result<Vec<Cha
     if faces[0].is_empty() {
         return Ok(Vec::new());
     }
-    let around = surfaces.map(Around::faces_of);
-    let farthest = around.iter().flat_map(|of| [of.min[2], of.max[2]]);
-    let rounding = ROUNDING * farthest.fold(0.0, |most: f64, z| most.max(z.abs()));
+    let [one, other] = surfaces.map(|of| bounds_of_faces(of).largest(2));
+    let rounding = ROUNDING * one.max(other);
     let at_height = |d: f64| match (d.abs() - height).abs() <= rounding {
         true => height.copysign(d),
         false => d,

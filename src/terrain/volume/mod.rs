@@ -12,7 +12,7 @@ pub(super) use self::sum::Sum;
 use self::sum::Unit;
 pub use self::zones::Zones;
 use super::overlay::{Corner, Number, Overlap, from_least, overlay};
-use crate::data::{Surface, map_batches};
+use crate::data::{Bounds, Surface, bounds_of_faces, map_batches};
 use crate::error::{Error, Result};
 
 /// The sizes of surfaces, along each axis, whose volumes are numbers.
@@ -97,22 +97,19 @@ pub fn volumes(
     zones: Option<&Zones>,
     height_unit: f64,
 ) -> Result<Vec<Volume>> {
-    let around = Around::faces_of(surface);
-    let units = match base {
-        VolumeBase::Surface(other) => {
-            let Around { min, max } = Around::faces_of(other);
-            around.with([min, max])
-        }
+    let mut around = bounds_of_faces(surface);
+    match base {
+        VolumeBase::Surface(other) => around.merge(&bounds_of_faces(other)),
         VolumeBase::Level(height) if !height.is_finite() => {
             return Err(Error::usage(format!("{height} is not a height"))
                 .cure("give the level as a finite number"));
         }
         VolumeBase::Level(height) => {
-            let level = |[x, y, _]: [f64; 3]| [x, y, height];
-            around.with([level(around.min), level(around.max)])
+            around.min[2] = around.min[2].min(height);
+            around.max[2] = around.max[2].max(height);
         }
     }
-    .units(height_unit)?;
+    let units = Units::within(&around, height_unit)?;
     let rows = Rows {
         units,
         zones,
@@ -173,6 +170,36 @@ pub(super) struct Units {
     pub(super) volume: Unit,
     pub(super) area: Unit,
     slope_area: Unit,
+}
+
+impl Units {
+    /// Returns the units for sums over faces within a box.
+    ///
+    /// # Errors
+    /// If a size is so large or so small that products of sizes are no numbers, or 0.
+    pub(super) fn within(bounds: &Bounds, height_unit: f64) -> Result<Self> {
+        let sizes = [0, 1, 2].map(|k| (bounds.max[k] - bounds.min[k]).max(0.0));
+        if let Some(size) = sizes
+            .iter()
+            .find(|&&size| size != 0.0 && !SIZES.contains(&size))
+        {
+            return Err(Error::limit(format!(
+                "the surfaces extend over {size:e}: expected 0, or between {:e} and {:e}",
+                SIZES.start(),
+                SIZES.end()
+            ))
+            .cure("give coordinates in other units"));
+        }
+        let [width, depth, relief] = sizes;
+        let area = width * depth;
+        Ok(Units {
+            volume: Unit::for_up_to(area * relief),
+            area: Unit::for_up_to(area),
+            // Of a surface that rises once over its size; there is room for a hundred million times
+            // as much.
+            slope_area: Unit::for_up_to(area + relief * height_unit * (width + depth)),
+        })
+    }
 }
 
 /// Sums of one row of the result.
@@ -298,67 +325,4 @@ fn stretch([a, b, c]: [[f64; 3]; 3], height_unit: f64) -> f64 {
     let [x, y] = [cross(1, 2), cross(2, 0)].map(|area| area * height_unit);
     let stretch = x.hypot(y).hypot(cross(0, 1)) / cross(0, 1);
     if stretch.is_finite() { stretch } else { 1.0 }
-}
-
-/// The box around the faces of a surface.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Around {
-    pub(super) min: [f64; 3],
-    pub(super) max: [f64; 3],
-}
-
-impl Around {
-    const NOTHING: Around = Around {
-        min: [f64::INFINITY; 3],
-        max: [f64::NEG_INFINITY; 3],
-    };
-
-    pub(super) fn faces_of(surface: &dyn Surface) -> Self {
-        let mut all = Self::NOTHING;
-        let ask = |numbers, triangles: &mut _| surface.triangles_in(numbers, triangles);
-        let make = |triangles: &[(u32, [[f64; 3]; 3])]| {
-            let corners = triangles.iter().flat_map(|(_, corners)| corners);
-            corners.fold(Self::NOTHING, |around, &p| around.with([p, p]))
-        };
-        let Ok(()) = map_batches(surface.face_count(), ask, make, |Around { min, max }| {
-            all = all.with([min, max]);
-            Ok::<(), Infallible>(())
-        });
-        all
-    }
-
-    pub(super) fn with(self, [min, max]: [[f64; 3]; 2]) -> Self {
-        Around {
-            min: [0, 1, 2].map(|k| self.min[k].min(min[k])),
-            max: [0, 1, 2].map(|k| self.max[k].max(max[k])),
-        }
-    }
-
-    /// Returns the units for sums over these faces.
-    ///
-    /// # Errors
-    /// If a size is so large or so small that products of sizes are no numbers, or 0.
-    pub(super) fn units(&self, height_unit: f64) -> Result<Units> {
-        let sizes = [0, 1, 2].map(|k| (self.max[k] - self.min[k]).max(0.0));
-        if let Some(size) = sizes
-            .iter()
-            .find(|&&size| size != 0.0 && !SIZES.contains(&size))
-        {
-            return Err(Error::limit(format!(
-                "the surfaces extend over {size:e}: expected 0, or between {:e} and {:e}",
-                SIZES.start(),
-                SIZES.end()
-            ))
-            .cure("give coordinates in other units"));
-        }
-        let [width, depth, relief] = sizes;
-        let area = width * depth;
-        Ok(Units {
-            volume: Unit::for_up_to(area * relief),
-            area: Unit::for_up_to(area),
-            // Of a surface that rises once over its size; there is room for a hundred million times
-            // as much.
-            slope_area: Unit::for_up_to(area + relief * height_unit * (width + depth)),
-        })
-    }
 }
