@@ -535,18 +535,14 @@ impl Computing<'_> {
         for (zone, (&record, rings)) in records.iter().zip(rings).enumerate() {
             let outline = Zones::new(std::slice::from_ref(rings))?;
             let base = rim_base(&outline, &sampler).map_err(|e| at_record(e, path, record))?;
-            let heights = highest(&base);
-            let base = terrain::VolumeBase::Surface(&base);
-            let mut found = self.volumes(&watched, base, Some(&outline))?;
-            found
-                .iter_mut()
-                .for_each(|volume| level_within_rounding(volume, heights));
+            let above = terrain::VolumeBase::Surface(&base);
+            let found = self.volumes(&watched, above, Some(&outline))?;
             rows.extend(found.into_iter().map(|volume| VolumeRow {
                 record: Some(record),
                 name: names.as_ref().map(|names| names[zone].clone()),
                 level: None,
                 polygon_area: Some(outline.area(0)),
-                volume,
+                volume: volume.level_within_rounding(&base),
                 earthwork: None,
             }));
         }
@@ -585,29 +581,6 @@ impl Computing<'_> {
                 volume,
                 earthwork: None,
             })
-    }
-}
-
-/// The rounding errors of heights on a surface, relative to the largest of these.
-const HEIGHT_ROUNDING: f64 = 8.0 * f64::EPSILON;
-
-/// Returns the largest amount of a height.
-fn highest(mesh: &Mesh) -> f64 {
-    let heights = (0..mesh.vertex_count() as u32).map(|vertex| mesh.position(vertex)[2].abs());
-    heights.fold(0.0, f64::max)
-}
-
-/// Removes a cut or a fill that is no more than rounding errors of these heights over the area: the
-/// corners of a base that is taken from the surface are rounded, and on a plane nothing is cut.
-fn level_within_rounding(volume: &mut Volume, heights: f64) {
-    let most = HEIGHT_ROUNDING * heights * volume.common_area;
-    for (volume, area) in [
-        (&mut volume.cut, &mut volume.cut_area),
-        (&mut volume.fill, &mut volume.fill_area),
-    ] {
-        if *volume <= most {
-            (*volume, *area) = (0.0, 0.0);
-        }
     }
 }
 

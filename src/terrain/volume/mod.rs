@@ -21,6 +21,9 @@ const SIZES: RangeInclusive<f64> = 1e-80..=1e80;
 /// A bound on the errors of areas, relative to all.
 const ROUNDING: f64 = 1e-12;
 
+/// The rounding errors of heights on a surface, relative to the largest of these.
+const HEIGHT_ROUNDING: f64 = 8.0 * f64::EPSILON;
+
 /// What a surface is compared with.
 #[derive(Clone, Copy)]
 pub enum VolumeBase<'a> {
@@ -71,6 +74,25 @@ impl Volume {
         } else {
             0.0
         }
+    }
+
+    /// Returns the volumes with a cut or a fill of 0 where it is no more than the rounding errors
+    /// of the heights of the base over the area: the corners of a base that is taken from the
+    /// surface are rounded, and on a plane nothing is cut.
+    ///
+    /// # Complexity
+    /// Linear in the faces of the base.
+    pub(crate) fn level_within_rounding(mut self, base: &dyn Surface) -> Self {
+        let most = HEIGHT_ROUNDING * bounds_of_faces(base).largest(2) * self.common_area;
+        for (volume, area) in [
+            (&mut self.cut, &mut self.cut_area),
+            (&mut self.fill, &mut self.fill_area),
+        ] {
+            if *volume <= most {
+                (*volume, *area) = (0.0, 0.0);
+            }
+        }
+        self
     }
 }
 
