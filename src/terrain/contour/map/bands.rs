@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::regions::Regions;
-use crate::data::{ContourLine, Surface, corners};
+use crate::data::{ContourLine, Surface, bounds_of_faces, corners};
 use crate::error::Result;
 use crate::terrain::Levels;
 use crate::terrain::contour::index::LevelIndex;
@@ -39,12 +39,8 @@ type Arc = (usize, [[f64; 2]; 2]);
 /// Linear in the faces, and expected O(n log n) in the n arcs of lines and the rim, with about 300
 /// bytes for each; bands are made on all threads.
 pub fn contour_bands(surface: &dyn Surface, levels: &Levels) -> Result<Vec<Band>> {
-    let mut heights = [f64::INFINITY, f64::NEG_INFINITY];
-    for (_, vertices) in corners(surface) {
-        for z in vertices.map(|v| surface.position(v)[2]) {
-            heights = [heights[0].min(z), heights[1].max(z)];
-        }
-    }
+    let bounds = bounds_of_faces(surface);
+    let heights = [bounds.min[2], bounds.max[2]];
     let index = LevelIndex::new(levels.within(heights[0], heights[1])?);
     let lines: Vec<ContourLine> = contours(surface, levels)?.collect();
     let regions = Regions::of(surface, &index);

@@ -51,27 +51,17 @@ use self::lattice::{Lattice, RingStart, Tracked};
 use self::nests::{Nests, SmallSide, small_side};
 use self::passes::Pass;
 use self::regions::Regions;
-use self::relax::Relaxing;
 use self::reshaped::Reshaped;
 pub use self::rules::MapRules;
 use self::rules::Scale;
-use self::tube::{Tube, nudge, smoothed};
+use self::tube::{nudge, smoothed};
 use super::contours;
 use super::index::LevelIndex;
 use super::line::start_at_smallest;
-use crate::data::{ContourLine, Surface, corners, doubled_area};
+use crate::data::{ContourLine, Surface, bounds_of_faces, doubled_area};
 use crate::error::Result;
 use crate::terrain::Levels;
 use crate::terrain::walk::{At, Locator};
-
-/// The radius of the smoothing of heights, in intervals.
-const RADIUS: f64 = 8.0;
-
-/// That radius at most, in mean distances of vertices: the time grows with its square.
-const LARGEST_RADIUS: f64 = 10.0;
-
-/// The largest move of a point in a pass, in intervals.
-const LARGEST_MOVE: f64 = 1.5;
 
 /// The contours of a surface for a map.
 #[derive(Debug, Clone, PartialEq)]
@@ -119,19 +109,13 @@ pub fn map_contours(
     if rules.is_plain() {
         return exact(surface, levels, rules);
     }
-    let scale = Scale::of(rules, levels);
-    let range = Range::of(surface);
+    let bounds = bounds_of_faces(surface);
+    let [lowest, highest] = [bounds.min[2], bounds.max[2]];
+    let scale = Scale::of(rules, levels, &bounds, surface.vertex_count());
     let margin = scale.interval;
-    let index = LevelIndex::new(levels.within(range.low[2] - margin, range.high[2] + margin)?);
+    let index = LevelIndex::new(levels.within(lowest - margin, highest + margin)?);
     let mut heights = match rules.smooth {
-        Some(_) => {
-            let tube = Tube {
-                radius: (RADIUS * scale.interval)
-                    .min(LARGEST_RADIUS * range.spacing(surface.vertex_count())),
-                largest: scale.tube,
-            };
-            smoothed(surface, tube)
-        }
+        Some(_) => smoothed(surface, scale.tube),
         None => (0..surface.vertex_count() as u32)
             .map(|vertex| surface.position(vertex)[2])
             .collect(),
@@ -178,7 +162,7 @@ pub fn map_contours(
     let mut drawn: Vec<Tracked> = kept.iter().filter_map(|&line| lines[line].take()).collect();
     drop(lines);
     if rules.smooth.is_some() || rules.simplify.is_some() {
-        for pass in passes(rules, &scale, &range) {
+        for pass in passes(rules, &scale) {
             drawn = pass.run(drawn, index.levels(), &corridor, &locator);
         }
     }
@@ -216,7 +200,7 @@ pub fn map_contours(
         let named = Named {
             levels,
             index: &index,
-            heights: [range.low[2], range.high[2]],
+            heights: [lowest, highest],
         };
         polygons(&named, found.iter().map(|line| &line.line), rim)?
     } else {
@@ -267,12 +251,9 @@ fn remove_where(
 
 /// Returns both passes: the lattice of the second one is shifted by half a cell, so that it rounds
 /// what the first one has fixed.
-fn passes(rules: &MapRules, scale: &Scale, range: &Range) -> [Pass; 2] {
-    let size = scale.cell(range.largest(), range.extent());
-    let relaxing = rules.smooth.map(|_| Relaxing {
-        half_width: RADIUS * scale.interval / 2.0,
-        largest_move: LARGEST_MOVE * scale.interval,
-    });
+fn passes(rules: &MapRules, scale: &Scale) -> [Pass; 2] {
+    let size = scale.cell;
+    let relaxing = rules.smooth.map(|_| scale.relaxing);
     let pass = |origin, start, tolerance| Pass {
         lattice: Lattice {
             size,
@@ -349,45 +330,4 @@ fn deviation(surface: &dyn Surface, lines: &[MapLine]) -> Result<f64> {
         .par_iter()
         .map(of_line)
         .try_reduce(|| 0.0, |a, b| Ok(a.max(b)))
-}
-
-/// The box around the vertices of faces.
-struct Range {
-    low: [f64; 3],
-    high: [f64; 3],
-}
-
-impl Range {
-    fn of(surface: &dyn Surface) -> Self {
-        let mut range = Range {
-            low: [f64::INFINITY; 3],
-            high: [f64::NEG_INFINITY; 3],
-        };
-        for (_, vertices) in corners(surface) {
-            for at in vertices.map(|v| surface.position(v)) {
-                let ends = range.low.iter_mut().zip(&mut range.high);
-                for ((low, high), coordinate) in ends.zip(at) {
-                    *low = low.min(coordinate);
-                    *high = high.max(coordinate);
-                }
-            }
-        }
-        range
-    }
-
-    /// Returns the mean distance of this many vertices, if they fill the box.
-    fn spacing(&self, vertices: usize) -> f64 {
-        let size = |axis: usize| self.high[axis] - self.low[axis];
-        (size(0) * size(1) / vertices as f64).sqrt()
-    }
-
-    /// Returns the largest coordinate in plan, without its sign.
-    fn largest(&self) -> f64 {
-        let of_axis = |axis: usize| self.low[axis].abs().max(self.high[axis].abs());
-        of_axis(0).max(of_axis(1))
-    }
-
-    fn extent(&self) -> f64 {
-        (self.high[0] - self.low[0]).max(self.high[1] - self.low[1])
-    }
 }

@@ -1,5 +1,8 @@
 //! What is asked of contours for maps.
 
+use super::relax::Relaxing;
+use super::tube::Tube;
+use crate::data::Bounds;
 use crate::error::{Error, Plain, Result};
 use crate::terrain::Levels;
 
@@ -111,6 +114,18 @@ impl MapRules {
     }
 }
 
+/// The radius of the smoothing of heights, in intervals.
+const RADIUS: f64 = 8.0;
+
+/// That radius at most, in mean distances of vertices: the time grows with its square.
+const LARGEST_RADIUS: f64 = 10.0;
+
+/// The largest move of a point in a pass, in intervals.
+const LARGEST_MOVE: f64 = 1.5;
+
+/// The side of the cells of the lattice, in intervals; at least as many units.
+const CELL: f64 = 64.0;
+
 /// What the recipe takes, in units of the plan and the heights.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Scale {
@@ -120,8 +135,12 @@ pub(super) struct Scale {
     pub(super) delta: f64,
     /// The half width of the corridor around each level, on the smoothed surface.
     pub(super) corridor: f64,
-    /// The largest change of a height by smoothing.
-    pub(super) tube: f64,
+    /// How far heights are smoothed, if they are.
+    pub(super) tube: Tube,
+    /// How far lines are smoothed, if they are.
+    pub(super) relaxing: Relaxing,
+    /// The side of the cells of the lattice.
+    pub(super) cell: f64,
 }
 
 /// The share of the tolerance that lines have; the surface has the rest.
@@ -131,7 +150,13 @@ const SHARE: f64 = 0.2;
 const ROUNDING: f64 = 1e-6;
 
 impl Scale {
-    pub(super) fn of(rules: &MapRules, levels: &Levels) -> Self {
+    /// Returns what rules and levels ask for on a surface within bounds that has some vertices.
+    pub(super) fn of(
+        rules: &MapRules,
+        levels: &Levels,
+        bounds: &Bounds,
+        vertex_count: usize,
+    ) -> Self {
         let interval = levels.interval();
         let whole = rules.smooth.unwrap_or(0.5 * interval);
         let delta = (1e-4 * interval).min(whole / 8.0);
@@ -140,20 +165,26 @@ impl Scale {
             Some(_) => SHARE * usable,
             None => usable,
         };
+        let [width, depth] = [0, 1].map(|axis| bounds.max[axis] - bounds.min[axis]);
+        // If vertices fill the box.
+        let spacing = (width * depth / vertex_count as f64).sqrt();
+        let radius = RADIUS * interval;
         Scale {
             interval,
             delta,
             corridor,
-            tube: rules.smooth.map_or(0.0, |_| usable - corridor),
+            tube: Tube {
+                radius: radius.min(LARGEST_RADIUS * spacing),
+                largest: rules.smooth.map_or(0.0, |_| usable - corridor),
+            },
+            relaxing: Relaxing {
+                half_width: radius / 2.0,
+                largest_move: LARGEST_MOVE * interval,
+            },
+            // Larger where a surface is vast, so that their number stays in bounds.
+            cell: (CELL * interval.max(1.0))
+                .max(bounds.largest(0).max(bounds.largest(1)) * 2f64.powi(-40))
+                .max(width.max(depth) * 2f64.powi(-16)),
         }
-    }
-
-    /// Returns the side of the cells of the lattice, for coordinates up to `largest` and a surface
-    /// of an extent. Cells larger than usual keep their number in bounds where a surface is vast.
-    pub(super) fn cell(&self, largest: f64, extent: f64) -> f64 {
-        let usual = 64.0 * self.interval.max(1.0);
-        usual
-            .max(largest * 2f64.powi(-40))
-            .max(extent * 2f64.powi(-16))
     }
 }
