@@ -39,10 +39,19 @@ type Arc = (usize, [[f64; 2]; 2]);
 /// Linear in the faces, and expected O(n log n) in the n arcs of lines and the rim, with about 300
 /// bytes for each; bands are made on all threads.
 pub fn contour_bands(surface: &dyn Surface, levels: &Levels) -> Result<Vec<Band>> {
+    let lines: Vec<ContourLine> = contours(surface, levels)?.collect();
+    bands_between(surface, levels, lines.iter())
+}
+
+/// Returns the areas between lines, which are all the contours of a surface.
+pub(super) fn bands_between<'a>(
+    surface: &dyn Surface,
+    levels: &Levels,
+    lines: impl Iterator<Item = &'a ContourLine>,
+) -> Result<Vec<Band>> {
     let bounds = bounds_of_faces(surface);
     let heights = [bounds.min[2], bounds.max[2]];
     let index = LevelIndex::new(levels.within(heights[0], heights[1])?);
-    let lines: Vec<ContourLine> = contours(surface, levels)?.collect();
     let regions = Regions::of(surface, &index);
     let own = regions.bands();
     let named = Named {
@@ -50,11 +59,7 @@ pub fn contour_bands(surface: &dyn Surface, levels: &Levels) -> Result<Vec<Band>
         index: &index,
         heights,
     };
-    polygons(
-        &named,
-        lines.iter(),
-        rim_arcs(surface, &index, &regions, &own),
-    )
+    polygons(&named, lines, rim_arcs(surface, &index, &regions, &own))
 }
 
 /// Levels, and the heights between which they are used.

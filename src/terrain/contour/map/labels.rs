@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::MapLine;
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
+use crate::terrain::vertices_along;
 
 /// How labels are placed; lengths are in plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -115,11 +116,7 @@ pub fn contour_labels(
     let spacing = rules.spacing.max(1.5 * longest);
     let candidates = Boxes::new(candidates);
     let is_best = |own: &&Candidate| {
-        let [low, high] = [-spacing, spacing].map(|d| own.at.map(|c| c + d));
-        let near = Extent {
-            min: low,
-            max: high,
-        };
+        let near = own.extent().grown(spacing);
         let better = candidates.find_in(near, |other| {
             let distance = (other.at[0] - own.at[0]).hypot(other.at[1] - own.at[1]);
             (distance < spacing && other.rank() < own.rank()).then_some(())
@@ -162,16 +159,9 @@ struct Side {
     ends: [[f64; 2]; 2],
 }
 
-fn extent_of([a, b]: [[f64; 2]; 2]) -> Extent {
-    Extent {
-        min: [0, 1].map(|k| a[k].min(b[k])),
-        max: [0, 1].map(|k| a[k].max(b[k])),
-    }
-}
-
 impl Boxed for Side {
     fn extent(&self) -> Extent {
-        extent_of(self.ends)
+        Extent::of_plan(self.ends)
     }
 }
 
@@ -194,7 +184,7 @@ impl Candidate {
 
 impl Boxed for Candidate {
     fn extent(&self) -> Extent {
-        extent_of([self.at; 2])
+        Extent::of_plan([self.at])
     }
 }
 
@@ -207,16 +197,12 @@ fn candidates(
 ) -> Vec<Candidate> {
     let length = rules.length_of(line.level);
     let mut points = line.points.clone();
-    let once = points.len() - 1;
+    let once = points.len().saturating_sub(1);
     if line.is_closed() {
         // Once more around, for texts at the point where it closes.
         points.extend_from_within(1..);
     }
-    let mut along = vec![0.0];
-    for ends in points.windows(2) {
-        let step = (ends[1][0] - ends[0][0]).hypot(ends[1][1] - ends[0][1]);
-        along.push(along[along.len() - 1] + step);
-    }
+    let along = vertices_along(&points);
     let whole = along[once];
     let mut found = Vec::new();
     for i in 0..once {
@@ -234,10 +220,7 @@ fn candidates(
         };
         let half = [0.5 * length, HALF_HEIGHT * rules.height];
         let reach = half[0].hypot(half[1]);
-        let near = Extent {
-            min: at.map(|c| c - reach),
-            max: at.map(|c| c + reach),
-        };
+        let near = Extent::of_plan([at]).grown(reach);
         let is_free = segments
             .find_in(near, |side| {
                 let enters = || enters_box(side.ends, at, direction, half);

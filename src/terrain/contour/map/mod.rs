@@ -44,7 +44,7 @@ mod tube;
 use rayon::prelude::*;
 
 pub use self::bands::{Band, contour_bands};
-use self::bands::{Named, polygons, rim_arcs};
+use self::bands::{Named, bands_between, polygons, rim_arcs};
 use self::corridor::Corridor;
 pub use self::labels::{ContourLabel, LabelRules, LabelTops, contour_labels};
 use self::lattice::{Lattice, RingStart, Tracked};
@@ -60,8 +60,8 @@ use super::index::LevelIndex;
 use super::line::start_at_smallest;
 use crate::data::{ContourLine, Surface, bounds_of_faces, doubled_area};
 use crate::error::Result;
-use crate::terrain::Levels;
 use crate::terrain::walk::{At, Locator};
+use crate::terrain::{Levels, vertices_along};
 
 /// The contours of a surface for a map.
 #[derive(Debug, Clone, PartialEq)]
@@ -122,16 +122,17 @@ pub fn map_contours(
     };
     nudge(&mut heights, index.levels(), scale.delta);
     let smooth = Reshaped { surface, heights };
-    let traced: Vec<ContourLine> = contours(&smooth as &dyn Surface, levels)?.collect();
+    let lines: Vec<ContourLine> = contours(&smooth as &dyn Surface, levels)?.collect();
+    let traced: Vec<Traced> = lines.par_iter().map(Traced::of).collect();
     let corridor = Corridor::new(&smooth, &index, scale.corridor);
     let locator = Locator::new(&smooth)?;
     let regions = Regions::of(&smooth, &index);
-    let lines: Vec<Tracked> = traced
-        .par_iter()
+    let lines: Vec<Tracked> = lines
+        .into_par_iter()
         .map(|line| Tracked {
             level: index.first_from(line.level),
             at: corridor.spots(&locator, &line.points),
-            points: line.points.clone(),
+            points: line.points,
         })
         .collect();
     let sides = lines
@@ -143,15 +144,14 @@ pub fn map_contours(
         .sides(&extents)
         .into_iter()
         .zip(&traced)
-        .map(|(sides, line)| Some(small_side(sides?, turns_left(line))))
+        .map(|(sides, line)| Some(small_side(sides?, line.turns_left)))
         .collect();
     let is_small = |line: usize, side: &SmallSide| {
         let area = side.extent.area_in(scale.interval);
-        let level = traced[line].level;
+        let Traced { level, turns_left } = traced[line];
         let relief = side.extent.highest.max(level) - side.extent.lowest.min(level);
-        let is_depression = turns_left(&traced[line]) == Some(true);
-        let is_kept =
-            rules.keeps(area, relief / scale.interval) || (rules.keep_depressions && is_depression);
+        let is_kept = rules.keeps(area, relief / scale.interval)
+            || (rules.keep_depressions && turns_left == Some(true));
         !is_kept
     };
     remove_where(&mut nests, &small, is_small);
@@ -216,10 +216,11 @@ pub fn map_contours(
 
 /// Returns contours as they are.
 fn exact(surface: &dyn Surface, levels: &Levels, rules: &MapRules) -> Result<MapContours> {
-    let lines = contours(surface, levels)?.map(|line| finished(&line, levels, line.points.clone()));
+    let lines =
+        contours(surface, levels)?.map(|line| finished(&Traced::of(&line), levels, line.points));
     let lines: Vec<MapLine> = lines.collect();
     let bands = match rules.with_bands {
-        true => contour_bands(surface, levels)?,
+        true => bands_between(surface, levels, lines.iter().map(|line| &line.line))?,
         false => Vec::new(),
     };
     Ok(MapContours {
@@ -288,27 +289,36 @@ fn sides_of(
     })
 }
 
-/// Returns whether a ring is counter-clockwise; `None` for an open line.
-fn turns_left(line: &ContourLine) -> Option<bool> {
-    line.is_closed().then(|| doubled_area(&line.points) > 0.0)
+/// What stays of a line while its points change.
+#[derive(Debug, Clone, Copy)]
+struct Traced {
+    level: f64,
+    /// True if it is a counter-clockwise ring; `None` for an open line.
+    turns_left: Option<bool>,
+}
+
+impl Traced {
+    fn of(line: &ContourLine) -> Self {
+        Traced {
+            level: line.level,
+            turns_left: line.is_closed().then(|| doubled_area(&line.points) > 0.0),
+        }
+    }
 }
 
 fn length(points: &[[f64; 2]]) -> f64 {
-    let segments = points.windows(2);
-    segments
-        .map(|ends| (ends[1][0] - ends[0][0]).hypot(ends[1][1] - ends[0][1]))
-        .sum()
+    vertices_along(points).last().copied().unwrap_or(0.0)
 }
 
 /// Returns a line as it is drawn; a ring starts at its smallest point.
-fn finished(traced: &ContourLine, levels: &Levels, mut points: Vec<[f64; 2]>) -> MapLine {
-    if traced.is_closed() {
+fn finished(traced: &Traced, levels: &Levels, mut points: Vec<[f64; 2]>) -> MapLine {
+    if traced.turns_left.is_some() {
         points.pop();
         start_at_smallest(&mut points);
         points.extend_from_within(..1);
     }
     MapLine {
-        is_depression: turns_left(traced) == Some(true),
+        is_depression: traced.turns_left == Some(true),
         number: levels.number_of(traced.level),
         line: ContourLine {
             level: traced.level,

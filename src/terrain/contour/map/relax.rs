@@ -3,6 +3,7 @@
 use super::corridor::{Corridor, Spot};
 use super::room::{Cell, Room};
 use super::strand::{Strand, turns_back};
+use crate::terrain::vertices_along;
 
 /// How often each line is smoothed.
 const ROUNDS: usize = 3;
@@ -100,16 +101,11 @@ fn moved(
 /// Returns the mean of a line around each of its points. It is of the segments within a distance
 /// along the line, weighted, and the distance is at most that to the ends.
 fn means(points: &[[f64; 2]], half_width: f64) -> Vec<[f64; 2]> {
-    let mut along = Vec::with_capacity(points.len());
-    let mut sum = 0.0;
-    along.push(sum);
-    for pair in points.windows(2) {
-        sum += (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]);
-        along.push(sum);
-    }
+    let along = vertices_along(points);
+    let whole = along[along.len() - 1];
     let mean = |i: usize| {
         let own = points[i];
-        let width = half_width.min(along[i]).min(sum - along[i]);
+        let width = half_width.min(along[i]).min(whole - along[i]);
         let mut first = i;
         while first > 0 && along[i] - along[first] < width {
             first -= 1;
