@@ -1,5 +1,7 @@
 //! Heights smoothed inside a tube around those of the surface.
 
+use std::sync::{Mutex, PoisonError};
+
 use rayon::prelude::*;
 
 use super::fit::Fit;
@@ -105,7 +107,8 @@ impl Vertices {
             starts[i] += starts[i - 1];
         }
         let mut next = starts.clone();
-        let mut neighbors = vec![NONE; starts.last().copied().unwrap_or(0) as usize];
+        // Some vertex, where a run is canceled before all neighbors are known.
+        let mut neighbors = vec![0; starts.last().copied().unwrap_or(0) as usize];
         each_edge(&mut |a, b| {
             neighbors[next[a as usize] as usize] = b;
             next[a as usize] += 1;
@@ -132,29 +135,37 @@ impl Vertices {
     /// Returns the heights after one pass.
     fn smooth(&self, heights: &[f64], original: &[f64], tube: Tube) -> Vec<f64> {
         let mut after = heights.to_vec();
-        after.par_chunks_mut(BATCH).enumerate().for_each_init(
-            || Around::new(self.positions.len()),
-            |around, (batch, after)| {
-                for (i, height) in after.iter_mut().enumerate() {
-                    let vertex = (batch * BATCH + i) as u32;
-                    let center = vertex as usize;
-                    if self.is_held[center] {
-                        continue;
-                    }
-                    around.collect(self, vertex, tube.radius);
-                    let fit = self.fit(around, center, heights, tube.radius);
-                    let is_one_sided = fit.eccentricity() > LARGEST_ECCENTRICITY;
-                    if fit.count < LEAST_COUNT || is_one_sided {
-                        continue;
-                    }
-                    let (z, fitted) = (original[center], heights[center] + fit.at_center());
-                    if fitted.is_finite() {
+        // One for each thread, and not for each part into which the batches are split.
+        let unused: Mutex<Vec<Around>> = Mutex::default();
+        let lock = || unused.lock().unwrap_or_else(PoisonError::into_inner);
+        let batches = after.par_chunks_mut(BATCH).enumerate();
+        batches.for_each(|(batch, after)| {
+            let taken = lock().pop();
+            let mut around = taken.unwrap_or_else(|| Around::new(self.positions.len()));
+            for (i, height) in after.iter_mut().enumerate() {
+                let center = batch * BATCH + i;
+                if !self.is_held[center] {
+                    around.collect(self, center as u32, tube.radius);
+                    if let Some(fitted) = self.fitted(&around, center, heights, tube.radius) {
+                        let z = original[center];
                         *height = fitted.max(z - tube.largest).min(z + tube.largest);
                     }
                 }
-            },
-        );
+            }
+            lock().push(around);
+        });
         after
+    }
+
+    /// Returns the height at a vertex by a fit; `None` if too little is known around it.
+    fn fitted(&self, around: &Around, center: usize, heights: &[f64], radius: f64) -> Option<f64> {
+        let fit = self.fit(around, center, heights, radius);
+        let is_one_sided = fit.eccentricity() > LARGEST_ECCENTRICITY;
+        if fit.count < LEAST_COUNT || is_one_sided {
+            return None;
+        }
+        let fitted = heights[center] + fit.at_center();
+        fitted.is_finite().then_some(fitted)
     }
 
     fn fit(&self, around: &Around, center: usize, heights: &[f64], radius: f64) -> Fit {
