@@ -58,6 +58,12 @@ impl Extent {
         self.min[axis] / 2.0 + self.max[axis] / 2.0
     }
 
+    /// Returns true if a position is in the box or on its border.
+    #[inline]
+    pub(super) fn contains(&self, q: [f64; 2]) -> bool {
+        (0..2).all(|i| self.min[i] <= q[i] && q[i] <= self.max[i])
+    }
+
     pub(super) fn overlaps(&self, other: &Extent) -> bool {
         (0..2).all(|i| self.min[i] <= other.max[i] && other.min[i] <= self.max[i])
     }

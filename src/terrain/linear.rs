@@ -1,6 +1,8 @@
-//! Heights and gradients on a triangle, linear between its corners.
+//! Heights and gradients on a triangle, linear between its corners; segments in plan.
 
+use crate::data::orientation;
 use crate::triangulation::geometry::height_along;
+use crate::triangulation::num::Sign;
 
 /// The ratio of width to longest side below which a triangle is a sliver.
 ///
@@ -57,6 +59,17 @@ fn along_sliver([a, b, c]: [[f64; 3]; 3], q: [f64; 2]) -> f64 {
 #[inline(always)]
 pub(super) fn plan<T: Copy>([x, y, _]: [T; 3]) -> [T; 2] {
     [x, y]
+}
+
+/// Returns the ends of a segment in the order of their x and y.
+pub(super) fn sorted([a, b]: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
+    if a <= b { [a, b] } else { [b, a] }
+}
+
+/// Returns the orientation of three points in plan. Exact.
+#[inline]
+pub(super) fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> Sign {
+    orientation([a, b, c].map(|[x, y]| [x, y, 0.0]))
 }
 
 /// The distance of two points in plan.

@@ -1,6 +1,7 @@
 use super::cut::Direction;
 use super::trace::{LooseEnd, Trace};
 use crate::data::Surface;
+use crate::terrain::linear::sorted;
 use crate::triangulation::kernel::{Exact, Kernel, Orientation2};
 use crate::triangulation::num::Sign;
 use std::cmp::Ordering;
@@ -72,7 +73,6 @@ pub(super) fn rejoin(lines: &[Joined]) -> Vec<Joined> {
         .map(|p| [p[0], p[1]])
         .filter(|[a, b]| a != b)
         .collect();
-    let sorted = |[a, b]: [[f64; 2]; 2]| if a <= b { [a, b] } else { [b, a] };
     let by_points =
         |a: &[[f64; 2]; 2], b: &[[f64; 2]; 2]| a.partial_cmp(b).unwrap_or(Ordering::Equal);
     arcs.sort_by(|&a, &b| by_points(&sorted(a), &sorted(b)).then_with(|| by_points(&a, &b)));

@@ -15,6 +15,7 @@ use super::cut::{ContourArc, Direction, LevelCut, Node};
 use super::index::LevelIndex;
 use crate::data::{ContourLine, Surface, lowest_and_highest};
 use crate::terrain::Levels;
+use crate::terrain::linear::sorted;
 use crate::terrain::thin::{STEPS, is_thin};
 use crate::triangulation::arrangement::Arrangement;
 
@@ -122,10 +123,6 @@ pub(super) fn by_level(mut sites: Vec<(usize, [f64; 2])>) -> Vec<(usize, Vec<[f6
 
 /// The two ends of an arc, the smaller one first.
 type Ends = [[f64; 2]; 2];
-
-fn sorted([a, b]: Ends) -> Ends {
-    if a <= b { [a, b] } else { [b, a] }
-}
 
 /// The bits of a site: equal for equal sites, since contours have no negative zeros.
 fn bits(site: [f64; 2]) -> [u64; 2] {

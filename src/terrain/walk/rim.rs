@@ -3,11 +3,11 @@
 use std::cmp::Ordering;
 use std::convert::Infallible;
 
-use super::segment::{Event, Segment, turn};
+use super::segment::{Event, Segment};
 use super::step::{At, Steps, Toward, height_on};
 use crate::data::Surface;
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
-use crate::terrain::linear::plan;
+use crate::terrain::linear::{plan, turn};
 use crate::triangulation::num::Sign;
 
 /// An edge at the rim of a surface: that of a face opposite a corner.

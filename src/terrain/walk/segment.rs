@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use crate::data::orientation;
+use crate::terrain::linear::{sorted, turn};
 use crate::triangulation::kernel::{Adaptive, Exact, Kernel, PointArea, Predicate, crossing_by};
 use crate::triangulation::num::{Number, Sign};
 
@@ -51,7 +51,7 @@ pub(super) enum Event {
 impl Segment {
     /// Returns the segment between two points; `None` if they are one.
     pub(super) fn new(from: [f64; 2], to: [f64; 2]) -> Option<Self> {
-        let ends = sorted(from, to);
+        let ends = sorted([from, to]);
         (from != to).then_some(Segment { from, to, ends })
     }
 
@@ -154,17 +154,6 @@ impl Segment {
         let error = 1e-10 * edge + 1e-14 * largest;
         x * dx + y * dy > error * (dx.abs() + dy.abs())
     }
-}
-
-/// Returns two points in the order of their x and y.
-fn sorted(a: [f64; 2], b: [f64; 2]) -> [[f64; 2]; 2] {
-    if a <= b { [a, b] } else { [b, a] }
-}
-
-/// Returns the orientation of three points in plan.
-#[inline]
-pub(super) fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> Sign {
-    orientation([a, b, c].map(|[x, y]| [x, y, 0.0]))
 }
 
 /// Returns an order from the sign of a difference.

@@ -3,9 +3,9 @@
 //! All decisions are signs of exact predicates, so the row of faces, edges and vertices is that of
 //! the real line; positions and heights are rounded once they are known.
 
-use super::segment::{Event, Seen, Segment, turn};
+use super::segment::{Event, Seen, Segment};
 use crate::data::{FaceAcross, Surface};
-use crate::terrain::linear::{linear, plan};
+use crate::terrain::linear::{linear, plan, turn};
 use crate::terrain::overlay::from_least;
 use crate::triangulation::geometry::height_along;
 use crate::triangulation::num::Sign;

@@ -6,7 +6,7 @@ use super::reshaped::{Divided, is_held};
 use crate::data::{Surface, corners};
 use crate::terrain::contour::crossing;
 use crate::terrain::contour::index::LevelIndex;
-use crate::terrain::linear::plan;
+use crate::terrain::linear::{plan, sorted};
 use crate::terrain::walk::{Arrival, At, Locator, follow_linked};
 
 /// A position in plan, with where on the surface it is.
@@ -30,10 +30,6 @@ type Anchors = FxHashMap<[u64; 2], [[f64; 2]; 2]>;
 
 fn key(point: [f64; 2]) -> [u64; 2] {
     point.map(f64::to_bits)
-}
-
-fn sorted([a, b]: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
-    if a <= b { [a, b] } else { [b, a] }
 }
 
 impl<'a> Corridor<'a> {

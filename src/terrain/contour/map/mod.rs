@@ -174,7 +174,7 @@ pub fn map_contours(
         let has_longer = nests.sides_with(|line| lengths[line] >= rules.min_length);
         remove_where(&mut nests, &small, |line, side| {
             // A short line across a neck has half of the surface on its small side.
-            let is_alone = has_longer[line].is_some_and(|longer| !longer[side.number()]);
+            let is_alone = has_longer[line].is_some_and(|longer| !longer[side.side]);
             lengths[line] < rules.min_length && is_alone
         });
     }
@@ -246,7 +246,7 @@ fn remove_where(
         small.iter().enumerate().filter_map(of_line).collect();
     removed.sort_by_key(|(_, side)| std::cmp::Reverse(side.extent.area));
     for (line, side) in removed {
-        side.remove(line, nests);
+        nests.remove(line, side.side);
     }
 }
 

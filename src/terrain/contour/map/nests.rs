@@ -27,7 +27,7 @@ pub(super) type Sides = [u32; 2];
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct SmallSide {
     /// 0 for the left, 1 for the right.
-    side: usize,
+    pub(super) side: usize,
     pub(super) extent: Extent,
 }
 
@@ -300,18 +300,6 @@ pub(super) fn small_side(sides: [Extent; 2], turns_left: Option<bool>) -> SmallS
     SmallSide {
         side,
         extent: sides[side],
-    }
-}
-
-impl SmallSide {
-    /// Returns 0 for the left side of the line, 1 for the right.
-    pub(super) fn number(self) -> usize {
-        self.side
-    }
-
-    /// Removes the line, with all lines on this side.
-    pub(super) fn remove(self, line: usize, nests: &mut Nests) {
-        nests.remove(line, self.side);
     }
 }
 

@@ -3,7 +3,8 @@
 use std::cmp::Ordering::{Greater, Less};
 
 use super::strand::Strand;
-use crate::data::orientation;
+use crate::terrain::boxes::Extent;
+use crate::terrain::linear::turn;
 use crate::triangulation::num::Sign;
 
 /// A point of a strand: the number of the strand, and that of the point.
@@ -14,23 +15,6 @@ pub(super) struct Room {
     pub(super) strands: Vec<Strand>,
     /// Which points are left.
     is_left: Vec<Vec<bool>>,
-}
-
-/// Returns the orientation of three points.
-fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> Sign {
-    orientation([a, b, c].map(|[x, y]| [x, y, 0.0]))
-}
-
-/// Returns the box around points.
-fn extent(points: &[[f64; 2]]) -> [[f64; 2]; 2] {
-    let corner = |choose: fn(f64, f64) -> f64| {
-        [0, 1].map(|axis| points.iter().map(|p| p[axis]).reduce(choose).unwrap_or(0.0))
-    };
-    [corner(f64::min), corner(f64::max)]
-}
-
-fn is_within([low, high]: [[f64; 2]; 2], point: [f64; 2]) -> bool {
-    (0..2).all(|axis| low[axis] <= point[axis] && point[axis] <= high[axis])
 }
 
 /// Returns true if a point lies in a closed triangle of either orientation, within its box.
@@ -48,8 +32,7 @@ fn is_in_triangle([a, b, c]: [[f64; 2]; 3], point: [f64; 2]) -> bool {
 
 /// Returns true if two closed segments have a point in common.
 fn meet([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> bool {
-    let [[low, high], [other_low, other_high]] = [extent(&[a, b]), extent(&[c, d])];
-    if (0..2).any(|k| low[k] > other_high[k] || high[k] < other_low[k]) {
+    if !Extent::of_plan([a, b]).overlaps(&Extent::of_plan([c, d])) {
         return false;
     }
     let apart = |p: Sign, q: Sign| p == q && p != Sign::Zero;
@@ -83,11 +66,11 @@ impl Room {
     /// Returns true if no point lies in a closed triangle, besides points of one strand and those
     /// that are equal to its first or its last corner.
     pub(super) fn is_empty(&self, triangle: [[f64; 2]; 3], strand: usize, own: &[usize]) -> bool {
-        let bounds = extent(&triangle);
+        let extent = Extent::of_plan(triangle);
         let [first, _, last] = triangle;
         self.strands.iter().enumerate().all(|(number, other)| {
             other.points.iter().enumerate().all(|(i, &point)| {
-                !is_within(bounds, point)
+                !extent.contains(point)
                     || !self.is_left[number][i]
                     || number == strand && own.contains(&i)
                     || point == first

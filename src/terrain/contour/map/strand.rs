@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 
 use super::corridor::Spot;
+use crate::terrain::linear::sorted;
 use crate::terrain::walk::At;
 
 /// The part of a line between two points that stay where they are. Its other points lie inside of
@@ -27,8 +28,7 @@ impl Strand {
 
     /// Returns the ends in an order that does not depend on the direction.
     pub(super) fn ends(&self) -> [[f64; 2]; 2] {
-        let [a, b] = [self.points[0], self.points[self.points.len() - 1]];
-        if a <= b { [a, b] } else { [b, a] }
+        sorted([self.points[0], self.points[self.points.len() - 1]])
     }
 
     /// Compares strands by their points.
