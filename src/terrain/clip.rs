@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use crate::data::{Bounds, orientation};
+use crate::data::Bounds;
 use crate::error::Result;
 use crate::triangulation::geometry::{Geometry, Terrain};
 use crate::triangulation::kernel::RANGE;
@@ -11,6 +11,7 @@ use crate::triangulation::num::Sign;
 use super::Tin;
 use super::admitted::refused;
 use super::cut::{DRAPED, SurfaceCut, cut, reach_of};
+use super::linear::turn;
 use super::regions::{Domain, Segment};
 
 /// The number of the domain of the bounds, and that of the first polygon; holes follow the
@@ -232,8 +233,7 @@ fn is_spike(before: Option<&[f64; 2]>, tip: [f64; 2], after: [f64; 2]) -> bool {
     let turns_back = |before: &[f64; 2]| {
         let is_beyond =
             |k: usize| before[k].max(after[k]) < tip[k] || tip[k] < before[k].min(after[k]);
-        let is_straight =
-            || orientation([*before, tip, after].map(|[x, y]| [x, y, 0.0])) == Sign::Zero;
+        let is_straight = || turn(*before, tip, after) == Sign::Zero;
         (is_beyond(0) || is_beyond(1)) && is_straight()
     };
     tip == after || before.is_some_and(turns_back)

@@ -1,6 +1,6 @@
 //! Point in polygon tests.
 
-use crate::data::orientation;
+use super::linear::turn;
 use crate::triangulation::num::Sign;
 
 type Edge = [[f64; 2]; 2];
@@ -111,7 +111,7 @@ impl Inside {
             if p[0] > a[0].max(b[0]) {
                 continue;
             }
-            match orientation([low, high, p].map(|[x, y]| [x, y, 0.0])) {
+            match turn(low, high, p) {
                 Sign::Zero => return Some(polygon),
                 // The point is to the left of an ascending edge.
                 Sign::Positive => is_odd ^= p[1] < high[1],

@@ -72,6 +72,12 @@ pub(super) fn turn(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> Sign {
     orientation([a, b, c].map(|[x, y]| [x, y, 0.0]))
 }
 
+/// Returns true if two closed segments whose boxes overlap have a point in common. Exact.
+pub(super) fn do_meet([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> bool {
+    let are_apart = |p: Sign, q: Sign| p == q && p != Sign::Zero;
+    !are_apart(turn(a, b, c), turn(a, b, d)) && !are_apart(turn(c, d, a), turn(c, d, b))
+}
+
 /// The distance of two points in plan.
 pub(super) fn plan_distance(p: [f64; 3], q: [f64; 3]) -> f64 {
     (p[0] - q[0]).hypot(p[1] - q[1])

@@ -3,8 +3,7 @@
 use std::convert::Infallible;
 
 use super::boxes::{Boxed, Boxes, Extent};
-use crate::data::orientation;
-use crate::triangulation::num::Sign;
+use super::linear::do_meet;
 
 /// How sections lie across an axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -141,13 +140,6 @@ impl Boxed for Line {
     fn extent(&self) -> Extent {
         self.extent
     }
-}
-
-/// Returns true if two segments whose boxes overlap have a point in common.
-fn do_meet([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> bool {
-    let turn = |p: [f64; 2], q, r| orientation([p, q, r].map(|[x, y]| [x, y, 0.0]));
-    let are_apart = |p: Sign, q: Sign| p == q && p != Sign::Zero;
-    !are_apart(turn(a, b, c), turn(a, b, d)) && !are_apart(turn(c, d, a), turn(c, d, b))
 }
 
 #[cfg(test)]

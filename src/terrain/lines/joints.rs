@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use rustc_hash::FxHashMap;
 
-use crate::data::orientation;
+use crate::terrain::linear::turn;
 use crate::triangulation::num::{Sign, unsigned_zero};
 
 /// A segment of a line at one of its vertices.
@@ -162,7 +162,7 @@ impl Arm {
     /// this arm leaves the vertex, otherwise counter-clockwise.
     fn side(self, from: [f64; 2], to: [f64; 2]) -> Sign {
         let [from, to] = if self.leaves { [to, from] } else { [from, to] };
-        orientation([self.vertex, from, to].map(|[x, y]| [x, y, 0.0]))
+        turn(self.vertex, from, to)
     }
 }
 

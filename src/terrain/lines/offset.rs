@@ -1,6 +1,6 @@
 //! Lines parallel to others.
 
-use crate::data::orientation;
+use crate::terrain::linear::turn;
 use crate::triangulation::num::Sign;
 
 /// How much farther than the distance a corner may be, as a factor: sharper corners are cut off.
@@ -59,7 +59,7 @@ fn beside([from, to]: [Option<[f64; 2]>; 2], vertex: [f64; 2], distance: f64) ->
             // Along the line, beyond its tip on the outer side of the turn.
             let inward = [after[1] - before[1], before[0] - after[0]];
             let length = inward[0].hypot(inward[1]);
-            let turn = orientation([from, vertex, to].map(|[x, y]| [x, y, 0.0]));
+            let turn = turn(from, vertex, to);
             let sign = if turn == Sign::Negative { -1.0 } else { 1.0 };
             inward.map(|c| sign * c / length)
         }

@@ -4,7 +4,7 @@ use std::cmp::Ordering::{Greater, Less};
 
 use super::strand::Strand;
 use crate::terrain::boxes::Extent;
-use crate::terrain::linear::turn;
+use crate::terrain::linear::{do_meet, turn};
 use crate::triangulation::num::Sign;
 
 /// A point of a strand: the number of the strand, and that of the point.
@@ -31,12 +31,8 @@ fn is_in_triangle([a, b, c]: [[f64; 2]; 3], point: [f64; 2]) -> bool {
 }
 
 /// Returns true if two closed segments have a point in common.
-fn meet([a, b]: [[f64; 2]; 2], [c, d]: [[f64; 2]; 2]) -> bool {
-    if !Extent::of_plan([a, b]).overlaps(&Extent::of_plan([c, d])) {
-        return false;
-    }
-    let apart = |p: Sign, q: Sign| p == q && p != Sign::Zero;
-    !apart(turn(a, b, c), turn(a, b, d)) && !apart(turn(c, d, a), turn(c, d, b))
+fn meet(one: [[f64; 2]; 2], other: [[f64; 2]; 2]) -> bool {
+    Extent::of_plan(one).overlaps(&Extent::of_plan(other)) && do_meet(one, other)
 }
 
 impl Room {

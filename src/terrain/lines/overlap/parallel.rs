@@ -1,6 +1,6 @@
 //! Lines beside a ring, no farther from it than a distance.
 
-use crate::data::orientation;
+use crate::terrain::linear::turn;
 use crate::terrain::lines::offset::normal;
 use crate::triangulation::num::Sign;
 
@@ -87,7 +87,7 @@ impl Corner {
         let sine = first[0] * second[1] - first[1] * second[0];
         let cosine = first[0] * second[0] + first[1] * second[1];
         let angle = sine.atan2(cosine).abs();
-        let turn = orientation([before, at, after].map(|[x, y]| [x, y, 0.0]));
+        let turn = turn(before, at, after);
         let is_inside = turn
             == if by > 0.0 {
                 Sign::Positive
