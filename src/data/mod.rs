@@ -66,7 +66,7 @@ pub use las_head::LasHead;
 pub use lattice::{Embedding, Lattice};
 pub use mesh::Mesh;
 pub(crate) use mesh::{area_of, not_finite, orientation};
-pub(crate) use multiples::Multiples;
+pub(crate) use multiples::{EXACT, Multiples, in_decimals};
 pub(crate) use named::named;
 pub use points::{
     PartRead, PointBatch, PointFlags, PointInfo, PointSink, PointSource, PointSummary,

@@ -1,10 +1,21 @@
 //! Multiples of numbers that are written in decimals.
 
-/// The most decimals that a step is looked for in.
+/// The most decimals that are looked for.
 const DECIMALS: i32 = 9;
 
-/// Whole numbers up to this are exact.
-const MOST: f64 = (1_u64 << 53) as f64;
+/// Whole numbers up to this are exact in an `f64`.
+pub(crate) const EXACT: f64 = (1_u64 << 53) as f64;
+
+/// Returns numbers times a power of ten, the least by which all of them are whole, and that power;
+/// `None` if one has more than nine decimals or too many digits.
+pub(crate) fn in_decimals<const N: usize>(numbers: [f64; N]) -> Option<([f64; N], f64)> {
+    (0..=DECIMALS).find_map(|digits| {
+        let over = 10_f64.powi(digits);
+        let whole = numbers.map(|number| (number * over).round());
+        let is_exact = |k: usize| whole[k] / over == numbers[k] && whole[k].abs() < EXACT;
+        (0..N).all(is_exact).then_some((whole, over))
+    })
+}
 
 /// The multiples of a step, as they are written: three times 0.1 is 0.3, and not
 /// 0.30000000000000004.
@@ -18,19 +29,12 @@ pub(crate) struct Multiples {
 impl Multiples {
     /// Returns the multiples of a step.
     pub(crate) fn of(step: f64) -> Self {
-        let in_decimals = (0..=DECIMALS).find_map(|digits| {
-            let over = 10_f64.powi(digits);
-            let whole = (step * over).round();
-            (whole / over == step && whole.abs() < MOST).then_some(Multiples { whole, over })
-        });
-        in_decimals.unwrap_or(Multiples {
-            whole: step,
-            over: 1.0,
-        })
+        let ([whole], over) = in_decimals([step]).unwrap_or(([step], 1.0));
+        Multiples { whole, over }
     }
 
-    /// Returns the multiple with a whole number: the double nearest to it, if that number is not
-    /// huge.
+    /// Returns the step times a whole number: the double nearest to the product in decimals, if
+    /// that has at most 15 digits.
     pub(crate) fn at(self, number: f64) -> f64 {
         number * self.whole / self.over
     }
@@ -57,7 +61,7 @@ mod tests {
             }
         }
         assert_ne!(3.0 * 0.1, Multiples::of(0.1).at(3.0));
-        // What is no decimal number is multiplied.
+        // A step with more decimals is multiplied as it is.
         let third = 1.0 / 3.0;
         assert_eq!(Multiples::of(third).at(7.0), 7.0 * third);
         assert!(Multiples::of(f64::NAN).at(1.0).is_nan());

@@ -1,3 +1,4 @@
+use crate::data::{EXACT, in_decimals};
 use crate::error::{Error, Plain, Result};
 use crate::triangulation::num::unsigned_zero;
 
@@ -141,9 +142,6 @@ fn smallest_difference(levels: &[f64]) -> f64 {
     differences.fold(f64::INFINITY, f64::min)
 }
 
-/// Whole numbers up to here are exact in an `f64`.
-const EXACT: f64 = (1_u64 << 53) as f64;
-
 fn every_within(interval: f64, base: f64, low: f64, high: f64) -> Result<Vec<f64>> {
     // One more on each side, because the quotients are rounded.
     let first = ((low - base) / interval).floor() - 1.0;
@@ -200,20 +198,17 @@ enum Progression {
 
 impl Progression {
     fn new(interval: f64, base: f64) -> Self {
-        let decimal = (0..=9)
-            .map(|decimals| 10_f64.powi(decimals))
-            .find_map(|unit| {
-                let whole = |value: f64| {
-                    let count = (value * unit).round();
-                    (count.abs() < EXACT && count / unit == value).then_some(count as i64)
-                };
-                Some(Progression::Decimal {
-                    interval: whole(interval)?,
-                    base: whole(base)?,
+        match in_decimals([interval, base]) {
+            Some((whole, unit)) => {
+                let [interval, base] = whole.map(|count| count as i64);
+                Progression::Decimal {
+                    interval,
+                    base,
                     unit,
-                })
-            });
-        decimal.unwrap_or(Progression::Binary { interval, base })
+                }
+            }
+            None => Progression::Binary { interval, base },
+        }
     }
 
     fn level(&self, k: i64) -> f64 {
