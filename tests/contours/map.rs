@@ -154,7 +154,7 @@ fn check_held(tin: &Tin, lines: &[ContourLine], interval: f64) {
             let [a, b] = [1, 2].map(|k| corners[(i + k) % 3]);
             let edge = [a, b].map(|p| [p[0], p[1]]);
             for line in lines {
-                // Heights may be raised by two thousandths of an interval in ten.
+                // Heights near a level are raised, by two ten-thousandths of an interval at most.
                 let slack = 3e-4 * interval;
                 let may_cross =
                     a[2].min(b[2]) - slack < line.level && line.level < a[2].max(b[2]) + slack;

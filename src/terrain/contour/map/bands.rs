@@ -10,7 +10,7 @@ use crate::terrain::contour::index::LevelIndex;
 use crate::terrain::contour::{Polygons, contours, crossing};
 use crate::terrain::linear::plan;
 
-/// An area of a surface between two levels next to each other.
+/// An area of a surface between two levels next to each other, in the units of the data.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Band {
@@ -62,10 +62,11 @@ pub(super) fn bands_between<'a>(
     polygons(&named, lines, rim_arcs(surface, &index, &regions, &own))
 }
 
-/// Levels, and the heights between which they are used.
+/// The heights by which bands are named: levels, and the lowest and the highest of the surface.
 pub(super) struct Named<'a> {
     pub(super) levels: &'a Levels,
     pub(super) index: &'a LevelIndex,
+    /// The lowest and the highest height of the surface.
     pub(super) heights: [f64; 2],
 }
 
@@ -83,7 +84,7 @@ impl Named<'_> {
     }
 }
 
-/// Returns the polygons that lines and a rim bound.
+/// Returns the polygons that lines and a rim bound, by bands and then by their rings.
 pub(super) fn polygons<'a>(
     named: &Named<'_>,
     lines: impl Iterator<Item = &'a ContourLine>,

@@ -1,4 +1,4 @@
-//! The lattice whose cells lines are worked on in.
+//! The lattice: lines are smoothed and simplified in its cells.
 
 use super::corridor::Corridor;
 use super::room::Cell;

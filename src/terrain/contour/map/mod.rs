@@ -70,9 +70,10 @@ pub struct MapContours {
     /// The lines, sorted by level and then by their points. Higher ground is on the right; a ring
     /// starts at its smallest point.
     pub lines: Vec<MapLine>,
-    /// The number of lines before any were left out.
+    /// The number of lines before some were left out.
     pub traced: usize,
-    /// The largest difference between the height of a line and the surface along it.
+    /// The largest difference between the height of a line and the surface along it, in the unit
+    /// of the heights.
     pub deviation: f64,
     /// The areas between the lines, if they were [asked for](MapRules::with_bands), from the lowest
     /// to the highest; see [`contour_bands`].
@@ -92,14 +93,21 @@ pub struct MapLine {
 
 /// Returns the contours of a surface for a map; those of [`contours`] if the rules ask for nothing.
 ///
+/// Plan and heights are in one unit. Heights are smoothed by quadrics fitted around each vertex,
+/// never across breaklines, walls, shores and banks; small lines are bridges in the graph of
+/// regions (Tarjan 1974); lines are simplified by the areas of triangles (Visvalingam and Whyatt
+/// 1993). No line is off the surface by more than the rules say, and no two meet.
+///
 /// # Errors
-/// Those of [`MapRules::check`] and [`contours`], and if the surface was found damaged.
+/// Those of [`MapRules::check`] and [`contours`]; with bands, those of [`contour_bands`]; and if
+/// the surface was found damaged.
 ///
 /// # Complexity
-/// Linear in the faces, times the vertices within eight intervals of each, and in the points of the
-/// lines, times those of a level in a cell of the lattice; on all threads but for the graph of
-/// regions. About 100 bytes for each vertex, 10 for each face, and 80 for each point of the lines
-/// before they are simplified.
+/// Linear in the vertices, times those within eight intervals of each, or within ten mean distances
+/// of vertices if these are less; and in the points of the lines, times those of a level in a cell
+/// of 64 intervals. On all threads, but for the graph of regions and the edges between vertices.
+/// About 100 bytes for each vertex, 10 for each face, and 80 for each point of the lines before
+/// they are simplified.
 pub fn map_contours(
     surface: &dyn Surface,
     levels: &Levels,
@@ -327,8 +335,8 @@ fn finished(traced: &Traced, levels: &Levels, mut points: Vec<[f64; 2]>) -> MapL
     }
 }
 
-/// Returns the largest difference between the heights of lines and a surface along them. What
-/// rounding puts beyond the rim does not count.
+/// Returns the largest difference between the heights of lines and a surface along them. Parts that
+/// rounding moves beyond the rim do not count.
 fn deviation(surface: &dyn Surface, lines: &[MapLine]) -> Result<f64> {
     let locator = Locator::new(surface)?;
     let of_line = |MapLine { line, .. }: &MapLine| {

@@ -8,7 +8,7 @@ use crate::terrain::vertices_along;
 /// How often each line is smoothed.
 const ROUNDS: usize = 3;
 
-/// The parts of the way to its target that a point tries.
+/// The shares of the distance to its target that a point tries to move by.
 const PARTS: [f64; 3] = [1.0, 0.5, 0.25];
 
 /// How far lines are smoothed.

@@ -1,4 +1,4 @@
-//! What else lies where a line is to be moved: exact tests among the lines of one level in a cell.
+//! The lines of one level in a cell, with exact tests of what lies where one is to be moved.
 
 use std::cmp::Ordering::{Greater, Less};
 

@@ -15,14 +15,15 @@ pub struct MapRules {
     /// The largest difference between the height of a line and the surface along it, if lines are
     /// smoothed: at most half of the interval.
     pub smooth: Option<f64>,
-    /// How far a vertex that is left out may be from the line, if lines are simplified. The height
-    /// along them differs by half of the interval at most, or as far as they are smoothed.
+    /// How far a vertex that is left out may be from the line, if lines are simplified. Lines still
+    /// stay as near to the surface as `smooth` says, or within half of the interval without it.
     pub simplify: Option<f64>,
-    /// Lines that enclose less, or cut off less at the rim, are left out; those that enclose a
-    /// fifth are kept where the ground within rises or falls by an interval.
+    /// The least area in plan that a ring encloses, or another line cuts off at the rim; lines with
+    /// less are left out, with all that is in there. A fifth suffices if the relief there is an
+    /// interval. If it is below a tenth of that, 20 times as much is needed.
     pub min_area: f64,
     /// Lines that are shorter, once they are smoothed, are left out with what they enclose, unless
-    /// a longer one is there.
+    /// a line of this length is in there.
     pub min_length: f64,
     /// Keeps depressions, whatever they enclose, unless a line around them is left out.
     pub keep_depressions: bool,
