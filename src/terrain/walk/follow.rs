@@ -56,7 +56,7 @@ impl Follow {
                     face,
                     corner,
                     along,
-                }) => match steps.reach([face, corner as u32], along, segment, take) {
+                }) => match steps.reach(face, corner, along, segment, take) {
                     Stepped::Ended(at) => return Err(at),
                     Stepped::Reached(event, next) => (self.here, self.toward) = (event, next),
                 },

@@ -45,7 +45,7 @@ pub(in crate::terrain) fn follow_linked(
                 face,
                 corner,
                 along,
-            }) => steps.reach([face, corner as u32], along, &segment, &mut take),
+            }) => steps.reach(face, corner, along, &segment, &mut take),
             None => return Arrival::Nowhere,
         };
         match stepped {

@@ -158,12 +158,12 @@ impl<'a> Steps<'a> {
     /// the segment ends before.
     pub(super) fn reach(
         &mut self,
-        [face, corner]: [u32; 2],
+        face: u32,
+        corner: usize,
         along: Option<usize>,
         segment: &Segment,
         take: &mut impl FnMut(Option<[f64; 3]>),
     ) -> Stepped {
-        let corner = corner as usize;
         let nowhere = Stepped::Reached(Event::Point(segment.to), None);
         if self.count().is_none() {
             return nowhere;
