@@ -94,6 +94,13 @@ impl Lattice {
         [(site / self.rows) as i32, (site % self.rows) as i32]
     }
 
+    /// The lowest and the highest height; infinity and its negative if there is none.
+    pub(super) fn range(&self) -> [f64; 2] {
+        let none = [f64::INFINITY, f64::NEG_INFINITY];
+        let join = |[low, high]: [f64; 2], tile: &[f64; 2]| [low.min(tile[0]), high.max(tile[1])];
+        self.ranges.iter().fold(none, join)
+    }
+
     /// The lowest and the highest height of the tile of a cell.
     #[inline]
     fn range_at(&self, column: usize, row: usize) -> [f64; 2] {
@@ -422,7 +429,8 @@ impl Edge {
     }
 }
 
-/// Positive if the third of three lattice points is left of the way from the first to the second.
+/// Positive if the third of three lattice points is to the left of the line from the first to the
+/// second.
 #[inline(always)]
 fn turn(points: [[i32; 2]; 3]) -> i64 {
     let [a, b, c] = points.map(|p| p.map(i64::from));

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::lattice::Lattice;
-use crate::data::AT_ONCE;
+use crate::data::{AT_ONCE, Bounds};
 use crate::triangulation::{InputError, spatial_order};
 
 /// The sites that a surface is to be close to.
@@ -89,18 +89,14 @@ impl Sites {
 
     /// The difference between the highest and the lowest height.
     pub(super) fn range_of_heights(&self) -> f64 {
-        let range = |mut heights: &mut dyn Iterator<Item = f64>| {
-            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-            for z in &mut heights {
-                // NaN is neither.
-                (low, high) = (low.min(z), high.max(z));
+        let [low, high] = match self {
+            Sites::Scattered { positions, .. } => {
+                let Bounds { min, max } = Bounds::around(positions);
+                [min[2], max[2]]
             }
-            if low <= high { high - low } else { 0.0 }
+            Sites::Lattice { lattice, .. } => lattice.range(),
         };
-        match self {
-            Sites::Scattered { positions, .. } => range(&mut positions.iter().map(|p| p[2])),
-            Sites::Lattice { lattice, .. } => range(&mut lattice.heights.iter().copied()),
-        }
+        if low <= high { high - low } else { 0.0 }
     }
 
     /// Some of these sites, numbered by their places in a list; of a lattice, a rectangle of it

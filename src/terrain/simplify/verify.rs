@@ -35,7 +35,7 @@ pub(super) fn measure(sites: &Sites, tin: &Tin, site_of: &[u32], bound: f64) -> 
 }
 
 impl Distances {
-    /// `error` has the distance of each of some sites; NaN where there is none.
+    /// Sums up some sites: `error` returns the distance of each, NaN where there is none.
     fn of(mut beyond: Vec<u32>, count: usize, error: impl Fn(usize) -> f64 + Sync) -> Self {
         beyond.sort_unstable();
         beyond.dedup();
