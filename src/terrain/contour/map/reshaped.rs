@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::data::{EdgeKind, Face, Surface, same_faces};
+use crate::data::{EdgeKind, Face, FaceAcross, Surface, same_faces};
 
 /// A surface with other heights.
 pub(super) struct Reshaped<'a> {
@@ -35,6 +35,13 @@ impl Surface for Reshaped<'_> {
 
     fn neighbor(&self, face: u32, i: usize) -> Option<u32> {
         self.surface.neighbor(face, i)
+    }
+
+    fn across(&self, face: u32, i: usize) -> Option<FaceAcross> {
+        let mut across = self.surface.across(face, i)?;
+        let corners = self.surface.face(across.number)?;
+        across.apex[2] = self.height(*corners.get(across.corner)?);
+        Some(across)
     }
 
     fn edge_kind(&self, face: u32, i: usize) -> EdgeKind {
@@ -94,6 +101,11 @@ impl Surface for Divided<'_> {
     fn neighbor(&self, face: u32, i: usize) -> Option<u32> {
         let is_linked = !is_held(self.0, face, i);
         self.0.neighbor(face, i).filter(|_| is_linked)
+    }
+
+    fn across(&self, face: u32, i: usize) -> Option<FaceAcross> {
+        let is_linked = !is_held(self.0, face, i);
+        is_linked.then(|| self.0.across(face, i))?
     }
 
     fn edge_kind(&self, face: u32, i: usize) -> EdgeKind {
