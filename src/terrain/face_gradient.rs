@@ -2,16 +2,13 @@
 
 use super::focal::direction;
 use super::linear;
+use crate::terrain::in_order::in_order;
 use crate::triangulation::num::unsigned_zero;
 
 /// Returns the rise per unit of x and of y on a triangle, whatever its first corner is; not finite
 /// if it has no area.
 pub(super) fn of_face(mut corners: [[f64; 3]; 3]) -> [f64; 2] {
-    corners.sort_unstable_by(|p, q| {
-        (p[0], p[1])
-            .partial_cmp(&(q[0], q[1]))
-            .unwrap_or(std::cmp::Ordering::Equal)
-    });
+    corners.sort_unstable_by(|p, q| in_order(&(p[0], p[1]), &(q[0], q[1])));
     // A level triangle has 0, not -0.0.
     linear::gradient(corners).map(unsigned_zero)
 }

@@ -65,6 +65,7 @@ mod face_slopes;
 mod focal;
 mod grid_surface;
 mod groups;
+mod in_order;
 mod inside;
 mod interpolate;
 mod levels;

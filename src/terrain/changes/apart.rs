@@ -7,6 +7,7 @@ use crate::error::{Error, Result};
 use crate::terrain::admitted::refused;
 use crate::terrain::arranged::arranged;
 use crate::terrain::boxes::{Boxes, Extent, LocatedFace};
+use crate::terrain::in_order::in_order;
 use crate::terrain::overlay::{from_least, within};
 use crate::terrain::rasterize::height_at;
 use crate::triangulation::kernel::RANGE;
@@ -73,7 +74,7 @@ pub(super) fn difference_over(
             // One order, however the surfaces are given.
             let before = |&i: &usize, &j: &usize| {
                 let [p, q] = [i, j].map(|i| plan(corners[i]));
-                p.partial_cmp(&q).unwrap_or(std::cmp::Ordering::Equal)
+                in_order(&p, &q)
             };
             let least = (0..3).min_by(before).unwrap_or(0);
             [0, 1, 2].map(|i| corners[(least + i) % 3])

@@ -1,6 +1,7 @@
 use super::cut::Direction;
 use super::trace::{LooseEnd, Trace};
 use crate::data::Surface;
+use crate::terrain::in_order::in_order;
 use crate::terrain::linear::sorted;
 use crate::triangulation::kernel::{Exact, Kernel, Orientation2};
 use crate::triangulation::num::Sign;
@@ -73,9 +74,7 @@ pub(super) fn rejoin(lines: &[Joined]) -> Vec<Joined> {
         .map(|p| [p[0], p[1]])
         .filter(|[a, b]| a != b)
         .collect();
-    let by_points =
-        |a: &[[f64; 2]; 2], b: &[[f64; 2]; 2]| a.partial_cmp(b).unwrap_or(Ordering::Equal);
-    arcs.sort_by(|&a, &b| by_points(&sorted(a), &sorted(b)).then_with(|| by_points(&a, &b)));
+    arcs.sort_by(|&a, &b| in_order(&sorted(a), &sorted(b)).then_with(|| in_order(&a, &b)));
     let mut open = Vec::new();
     for same in arcs.chunk_by(|&a, &b| sorted(a) == sorted(b)) {
         let first_direction = same.iter().take_while(|&&arc| arc == same[0]).count();
@@ -102,7 +101,7 @@ pub(super) fn rejoin(lines: &[Joined]) -> Vec<Joined> {
             line,
         });
     }
-    ends.sort_by(|a, b| a.center.partial_cmp(&b.center).unwrap_or(Ordering::Equal));
+    ends.sort_by(|a, b| in_order(&a.center, &b.center));
     let mut next = vec![None; open.len()];
     for group in ends.chunk_by(|a, b| a.center == b.center) {
         pair(group.to_vec(), &mut next);

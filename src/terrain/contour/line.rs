@@ -2,6 +2,7 @@ use super::join::{Joined, rejoin};
 use super::loops::cut_loops;
 use super::narrow::Bends;
 use crate::data::ContourLine;
+use crate::terrain::in_order::in_order;
 use std::cmp::Ordering;
 
 /// Returns the finished lines of a level, sorted. Where rounding shows, the rule is applied to the
@@ -24,7 +25,7 @@ pub(super) fn finish_level(
     for line in lines {
         finish(level, line, &mut finished);
     }
-    finished.sort_by(|a, b| a.points.partial_cmp(&b.points).unwrap_or(Ordering::Equal));
+    finished.sort_by(|a, b| in_order(&a.points, &b.points));
     finished
 }
 

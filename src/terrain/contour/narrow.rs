@@ -15,6 +15,7 @@ use super::cut::{ContourArc, Direction, LevelCut, Node};
 use super::index::LevelIndex;
 use crate::data::{ContourLine, Surface, lowest_and_highest};
 use crate::terrain::Levels;
+use crate::terrain::in_order::in_order;
 use crate::terrain::linear::sorted;
 use crate::terrain::thin::{STEPS, is_thin};
 use crate::triangulation::arrangement::Arrangement;
@@ -112,7 +113,7 @@ fn levels_between([low, high]: [f64; 2], index: &LevelIndex) -> Range<usize> {
 
 /// Returns the same sites, each once, grouped by level.
 pub(super) fn by_level(mut sites: Vec<(usize, [f64; 2])>) -> Vec<(usize, Vec<[f64; 2]>)> {
-    sites.sort_unstable_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+    sites.sort_unstable_by(in_order);
     sites.dedup();
     let of_level = |group: &[(usize, [f64; 2])]| {
         let sites = group.iter().map(|(_, site)| *site).collect();
@@ -147,10 +148,10 @@ impl NarrowArcs {
     /// Returns how the arcs that cross are bent.
     pub(super) fn bends(self) -> Bends {
         let mut arcs = self.0;
-        arcs.sort_unstable_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+        arcs.sort_unstable_by(in_order);
         arcs.dedup();
         let mut sites = arcs.concat();
-        sites.sort_unstable_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+        sites.sort_unstable_by(in_order);
         sites.dedup();
         let numbers: FxHashMap<[u64; 2], u32> =
             (0..).zip(&sites).map(|(i, &p)| (bits(p), i)).collect();

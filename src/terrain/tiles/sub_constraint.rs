@@ -4,6 +4,7 @@ use super::Tile;
 use crate::data::EdgeKind;
 use crate::error::{Error, Result};
 use crate::terrain::admitted;
+use crate::terrain::in_order::in_order;
 use crate::triangulation::geometry::{Geometry, Plane};
 use crate::triangulation::kernel::{Kernel, Orientation2, Wide};
 use crate::triangulation::num::{Sign, unsigned_zero};
@@ -44,7 +45,7 @@ impl SubConstraint {
             ))
             .cure("pass the kind of a line, such as Breakline"));
         }
-        ends.sort_unstable_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+        ends.sort_unstable_by(in_order);
         Ok(SubConstraint {
             ends,
             kind: self.kind,

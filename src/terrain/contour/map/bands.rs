@@ -8,6 +8,7 @@ use crate::error::Result;
 use crate::terrain::Levels;
 use crate::terrain::contour::index::LevelIndex;
 use crate::terrain::contour::{Polygons, contours, crossing};
+use crate::terrain::in_order::in_order;
 use crate::terrain::linear::plan;
 
 /// An area of a surface between two levels next to each other, in the units of the data.
@@ -97,18 +98,14 @@ pub(super) fn polygons<'a>(
             arcs.push((level, [ends[1], ends[0]]));
         }
     }
-    arcs.par_sort_unstable_by(|a, b| {
-        let by_ends = a.1.partial_cmp(&b.1);
-        a.0.cmp(&b.0)
-            .then(by_ends.unwrap_or(std::cmp::Ordering::Equal))
-    });
+    arcs.par_sort_unstable_by(in_order);
     let of_bands: Vec<&[Arc]> = arcs.chunk_by(|a, b| a.0 == b.0).collect();
     let polygons_of = |arcs: &&[Arc]| {
         let [low, high] = named.range(arcs[0].0);
         let bare: Vec<[[f64; 2]; 2]> = arcs.iter().map(|arc| arc.1).collect();
         let mut polygons = Polygons::new(&bare)?.rings;
         polygons.retain(|rings| !rings.is_empty());
-        polygons.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+        polygons.sort_by(in_order);
         let band = |rings| Band { low, high, rings };
         Ok(polygons.into_iter().map(band).collect::<Vec<Band>>())
     };

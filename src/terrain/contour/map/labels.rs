@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::MapLine;
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
+use crate::terrain::in_order::in_order;
 use crate::terrain::vertices_along;
 
 /// How labels are placed; lengths are in plan.
@@ -124,10 +125,7 @@ pub fn contour_labels(
         better.is_none()
     };
     let mut best: Vec<&Candidate> = candidates.items().par_iter().filter(is_best).collect();
-    best.sort_by(|a, b| {
-        let order = (a.level, a.at).partial_cmp(&(b.level, b.at));
-        order.unwrap_or(std::cmp::Ordering::Equal)
-    });
+    best.sort_by(|a, b| in_order(&(a.level, a.at), &(b.level, b.at)));
     best.dedup_by_key(|candidate| candidate.at);
     let label = |candidate: &Candidate| ContourLabel {
         at: candidate.at,

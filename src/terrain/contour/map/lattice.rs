@@ -3,6 +3,7 @@
 use super::corridor::Corridor;
 use super::room::Cell;
 use super::strand::Strand;
+use crate::terrain::in_order::in_order;
 use crate::terrain::walk::{At, Locator};
 
 /// Square cells in plan, from a coordinate on.
@@ -165,10 +166,7 @@ impl Lattice {
             at.pop();
             is_fixed.pop();
             let start = is_fixed.iter().position(|&is| is).or_else(|| {
-                let by_point = |&i: &usize, &k: &usize| {
-                    let order = points[i].partial_cmp(&points[k]);
-                    order.unwrap_or(std::cmp::Ordering::Equal)
-                };
+                let by_point = |&i: &usize, &k: &usize| in_order(&points[i], &points[k]);
                 match self.start {
                     RingStart::Least => (0..points.len()).min_by(by_point),
                     RingStart::Greatest => (0..points.len()).max_by(by_point),

@@ -60,6 +60,7 @@ use super::index::LevelIndex;
 use super::line::start_at_smallest;
 use crate::data::{ContourLine, Surface, bounds_of_faces, doubled_area};
 use crate::error::Result;
+use crate::terrain::in_order::in_order;
 use crate::terrain::walk::{At, Locator};
 use crate::terrain::{Levels, vertices_along};
 
@@ -193,13 +194,8 @@ pub fn map_contours(
         .map(|(&line, drawn)| finished(&traced[line], levels, drawn.points))
         .collect();
     found.sort_by(|a, b| {
-        let order = a.line.level.total_cmp(&b.line.level);
-        order.then_with(|| {
-            a.line
-                .points
-                .partial_cmp(&b.line.points)
-                .unwrap_or(std::cmp::Ordering::Equal)
-        })
+        let by_level = a.line.level.total_cmp(&b.line.level);
+        by_level.then_with(|| in_order(&a.line.points, &b.line.points))
     });
     let bands = if rules.with_bands {
         let of_lines: Vec<usize> = traced.iter().map(|l| index.first_from(l.level)).collect();

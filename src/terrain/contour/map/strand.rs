@@ -3,6 +3,7 @@
 use std::cmp::Ordering;
 
 use super::corridor::Spot;
+use crate::terrain::in_order::in_order;
 use crate::terrain::linear::sorted;
 use crate::terrain::walk::At;
 
@@ -33,8 +34,7 @@ impl Strand {
 
     /// Compares strands by their points.
     pub(super) fn compare(&self, other: &Strand) -> Ordering {
-        let order = self.points.partial_cmp(&other.points);
-        order.unwrap_or(Ordering::Equal)
+        in_order(&self.points, &other.points)
     }
 }
 

@@ -6,8 +6,8 @@ use crate::terrain::contour::find;
 use crate::terrain::contour::join::{End, Joined, chain, pair};
 use crate::terrain::contour::line::finish_level;
 use crate::terrain::contour::narrow::{Bends, NarrowArcs};
+use crate::terrain::in_order::in_order;
 use rayon::prelude::*;
-use std::cmp::Ordering;
 
 impl ContourParts {
     /// Merges the parts of several tasks, so that less is left to join: lines are joined where they
@@ -288,7 +288,7 @@ fn follow<K: Ord>(
     next: &mut [Option<usize>],
 ) -> Result<()> {
     let by_direction = |a: &End, b: &End| {
-        let by_toward = a.toward.partial_cmp(&b.toward).unwrap_or(Ordering::Equal);
+        let by_toward = in_order(&a.toward, &b.toward);
         by_toward.then_with(|| {
             (a.direction == Direction::Forward).cmp(&(b.direction == Direction::Forward))
         })
