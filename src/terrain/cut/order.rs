@@ -3,6 +3,7 @@
 
 use std::cmp::Ordering;
 
+use crate::terrain::in_order::in_order;
 use crate::triangulation::ConstrainedDelaunay;
 use crate::triangulation::geometry::{Geometry, Terrain};
 use crate::triangulation::tds::CellId;
@@ -31,5 +32,5 @@ pub(super) fn compare(base: &ConstrainedDelaunay<Terrain>, a: CellId, b: CellId)
             corners(base, cell)
         }
     };
-    key(a).partial_cmp(&key(b)).unwrap_or(Ordering::Equal)
+    in_order(&key(a), &key(b))
 }

@@ -2,6 +2,7 @@
 
 use std::cmp::Ordering;
 
+use crate::terrain::in_order::in_order;
 use crate::terrain::linear::{sorted, turn};
 use crate::triangulation::kernel::{Adaptive, Exact, Kernel, PointArea, Predicate, crossing_by};
 use crate::triangulation::num::{Number, Sign};
@@ -107,7 +108,7 @@ impl Segment {
     /// Compares points on the line of the segment.
     pub(super) fn compare_points(&self, a: [f64; 2], b: [f64; 2]) -> Ordering {
         let axis = usize::from(self.from[0] == self.to[0]);
-        let order = a[axis].partial_cmp(&b[axis]).unwrap_or(Ordering::Equal);
+        let order = in_order(&a[axis], &b[axis]);
         if self.from[axis] < self.to[axis] {
             order
         } else {
