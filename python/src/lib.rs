@@ -20,6 +20,7 @@ mod notices;
 mod profile;
 mod reports;
 mod requests;
+mod runs;
 mod spatial;
 mod surface;
 mod triangle;
@@ -45,6 +46,8 @@ mod _breakline {
     use super::names::settings;
     #[pymodule_export]
     use super::profile::{drape, profile};
+    #[pymodule_export]
+    use super::runs::run;
     #[pymodule_export]
     use super::surface::{Surface, check_file, edge_kinds, write_cells, write_contours};
 

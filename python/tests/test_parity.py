@@ -21,6 +21,8 @@ RENAMED = {"a-srs": "crs", "t-srs": "to_crs", "te": "extent", "class": "classes"
 
 #: Verbs that are no functions, and why.
 NO_FUNCTIONS = {
+    "completions": "of the shell",
+    "man": "pages for the shell",
     "demo": "writes files to look at and prints commands to type",
     "job": "breakline.Job does the tasks of batch queues; breakline.dask does those of a cluster",
 }

@@ -7,6 +7,7 @@
 mod exit;
 mod input;
 mod report;
+mod tables;
 mod verbs;
 
 use std::ffi::OsString;
@@ -20,8 +21,9 @@ use self::input::args::{Cli, ConsoleArgs, Verb};
 use self::input::habits;
 use self::report::console::{Console, Verbosity};
 use self::report::{names, summary};
+pub use self::tables::{RunOptions, RunTables};
 use crate::error::{Kind, Result, Term};
-use crate::run::Facts;
+use crate::run::{Context, Facts};
 
 /// Runs the program with the given arguments and returns how it ended. The first argument is the
 /// program's name.
@@ -56,7 +58,11 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> Exit {
     match dispatch(&cli.verb, &cli.console, &console) {
         Ok(exit) => {
             match cli.verb {
-                Verb::Info(_) | Verb::Demo(_) | Verb::Describe(_) => {}
+                Verb::Info(_)
+                | Verb::Demo(_)
+                | Verb::Describe(_)
+                | Verb::Completions(_)
+                | Verb::Man(_) => {}
                 _ => summary::print_cost(start, &console),
             }
             exit
@@ -90,6 +96,20 @@ pub fn description() -> String {
     verbs::describe::describe().to_string()
 }
 
+/// Makes the products of a run file, or of the same tables as a JSON object, and returns their
+/// report as JSON. All files appear at the end, or none. With `dry_run`, nothing is made, and the
+/// report is what would be.
+///
+/// # Errors
+/// If the tables are wrong, a product cannot be made, or the run is canceled.
+pub fn run_products(
+    tables: RunTables<'_>,
+    options: &RunOptions,
+    context: &Context,
+) -> Result<String> {
+    verbs::run::report_of(tables, options, context).map(|report| report.to_string())
+}
+
 /// Returns the contents of a file as the JSON object that `info --json` prints for it.
 pub fn facts_as_json(path: &Path, facts: &Facts) -> String {
     verbs::info::as_json(path, facts).to_string()
@@ -121,6 +141,9 @@ fn dispatch(verb: &Verb, how: &ConsoleArgs, console: &Console) -> Result<Exit> {
         Verb::Accuracy(args) => verbs::accuracy::run(args, console),
         Verb::Job(args) => verbs::job::run(args, console),
         Verb::Demo(args) => verbs::demo::run(args, how, console, &|words| run(words)),
+        Verb::Run(args) => verbs::run::run(args, console),
         Verb::Describe(args) => verbs::describe::run(args),
+        Verb::Completions(args) => verbs::shell::completions(args),
+        Verb::Man(args) => verbs::shell::man(args, console),
     }
 }

@@ -11,6 +11,7 @@
 //! | simplify it, also a raster | [`SimplifyRule`](crate::terrain::SimplifyRule) | [`simplify`] | [`SurfaceProduct`] |
 //! | write it as a mesh | | [`write_mesh`] | |
 //! | write what a verb makes of it, in one piece or in tiles | [`WriteRequest`] | [`write()`] | [`WriteReport`] |
+//! | write several products of one surface | [`SharedSurfaces`], [`SharedProduct`] | [`SharedProduct::write`] | [`Summary`] |
 //! | heights at the centers of cells | [`DemOptions`] | [`dem`] | [`CellProduct`] |
 //! | heights at positions | positions | [`elevations`], [`Heights`] | a list |
 //! | heights and slopes, added to points | [`SampleOptions`] | [`sample()`] | [`SampleReport`] |
@@ -83,6 +84,7 @@ mod lines;
 mod opened;
 mod products;
 mod request;
+mod shared;
 mod sources;
 mod space;
 mod triangulate;
@@ -153,6 +155,7 @@ pub use request::lines::{
     FlatOptions, FlatRule, LineRequest, LineRole, LowerEdge, PerRecord, WallOptions,
 };
 pub use request::sizes::memory_of;
+pub use shared::{SharedProduct, SharedSurfaces, SurfaceEstimate};
 pub use sources::open::is_of_lines;
 pub use sources::point_files::BadFiles;
 pub use sources::proj;

@@ -22,6 +22,7 @@ mod profiles;
 mod relief;
 mod results;
 mod returns;
+mod runs;
 mod sampling;
 mod simplify;
 mod systems;

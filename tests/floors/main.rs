@@ -64,6 +64,7 @@ const RUN: Floors = &[
     &["job", "space"],
     &["write"],
     &["opened"],
+    &["shared"],
 ];
 
 /// The binding for Python: the library, and the package around it.

@@ -57,6 +57,7 @@ from ._profiles import Profile, drape, profile
 from ._quantities import aspect, curvature, roughness, slope, tpi, tri
 from ._relief import Relief, color_relief
 from ._results import Contour, Contours, Raster
+from ._runs import run
 from ._samples import Accuracy, SetAccuracy, accuracy, sample
 from ._tin import EDGE_KINDS, Flaw, Notice, Tin, tin
 from ._verbs import (
@@ -127,6 +128,7 @@ __all__ = [
     "profile",
     "read_points",
     "roughness",
+    "run",
     "sample",
     "simplify",
     "slope",

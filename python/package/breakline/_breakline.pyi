@@ -194,6 +194,9 @@ def main(arguments: list[str]) -> int: ...
 def read_points(
     files: list[str], read: dict[str, Any], systems: dict[str, Any], selection: dict[str, Any], call: _Call
 ) -> dict[str, Any]: ...
+def run(
+    file: Optional[str], tables: Optional[str], overwrite: bool, memory: Optional[str], dry_run: bool, call: _Call
+) -> str: ...
 def write_points(
     files: list[str],
     read: dict[str, Any],

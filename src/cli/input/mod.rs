@@ -7,3 +7,4 @@ pub(super) mod habits;
 pub(super) mod inputs;
 pub(super) mod outputs;
 pub(super) mod plan;
+pub(super) mod run_file;

@@ -18,7 +18,7 @@ use crate::run::{
 use crate::terrain::Classes;
 
 /// The request for a surface, and what is written with all that is made of it.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct SurfacePlan {
     pub(crate) request: SurfaceRequest,
     /// The tables; no output is named yet.
@@ -72,19 +72,28 @@ impl SurfacePlan {
     }
 
     /// Returns a request for each input: a surface of its own. The options of building a TIN apply
-    /// to all inputs of points.
+    /// to all inputs of points. The first input is `given`, if that is there already.
     ///
     /// # Errors
     /// Those of [`resolve`](Self::resolve).
-    pub(crate) fn resolve_each(args: &SurfaceArgs, console: &Console) -> Result<Vec<Self>> {
+    pub(crate) fn resolve_each(
+        args: &SurfaceArgs,
+        given: Option<&SurfacePlan>,
+        console: &Console,
+    ) -> Result<Vec<Self>> {
         let alone = |input: &PathBuf| SurfaceArgs {
             inputs: vec![input.clone()],
             ..args.clone()
         };
         let each: Vec<SurfaceArgs> = args.inputs.iter().map(alone).collect();
+        let source = |(i, args): (usize, &SurfaceArgs)| match given.filter(|_| i == 0) {
+            Some(plan) => Ok(plan.request.source.clone()),
+            None => Source::of_files(&inputs::expand(&args.inputs, console)?),
+        };
         let sources = each
             .iter()
-            .map(|args| Source::of_files(&inputs::expand(&args.inputs, console)?))
+            .enumerate()
+            .map(source)
             .collect::<Result<Vec<_>>>()?;
         let is_built = |source: &Source| matches!(source, Source::Points(_));
         let any_is_built = sources.iter().any(is_built);
@@ -94,7 +103,13 @@ impl SurfacePlan {
             true => Self::as_it_is(source, args),
             false => Self::resolve(args, console),
         };
-        each.iter().zip(sources).map(plan).collect()
+        let others = each.iter().zip(sources).skip(given.iter().count());
+        given
+            .cloned()
+            .map(Ok)
+            .into_iter()
+            .chain(others.map(plan))
+            .collect()
     }
 
     /// Returns the request for a surface that is read, whatever options there are of building one.

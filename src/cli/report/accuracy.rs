@@ -2,7 +2,6 @@
 
 use serde_json::{Map, Value, json};
 
-use super::escape;
 use super::statistics::{TITLES, shown};
 use super::summary::counted;
 use crate::io::csv_field;
@@ -131,7 +130,7 @@ fn decided(decision: &ClassDecision, product: &AccuracyProduct) -> String {
 }
 
 /// Returns exact numbers as JSON.
-pub(crate) fn json(product: &AccuracyProduct) -> String {
+pub(crate) fn json(product: &AccuracyProduct) -> Value {
     let set = |accuracy: &SetAccuracy| {
         let mut object = named(&accuracy.set);
         object.insert("n".to_owned(), accuracy.statistics.count.into());
@@ -167,15 +166,14 @@ pub(crate) fn json(product: &AccuracyProduct) -> String {
             "counts": histogram.counts,
         })
     });
-    let all = json!({
+    json!({
         "unit": product.unit.as_ref().map(|unit| &unit.name),
         "checkpoint_error": product.checkpoint_error,
         "sets": product.sets.iter().map(set).collect::<Vec<_>>(),
         "class": decision,
         "histogram": histogram,
         "points": product.rows.iter().map(row).collect::<Vec<_>>(),
-    });
-    escape::json(&format!("{all:#}\n"))
+    })
 }
 
 fn named(set: &CheckpointSet) -> Map<String, Value> {

@@ -2,7 +2,6 @@
 
 use serde_json::{Map, Value, json};
 
-use super::escape;
 use super::statistics::{TITLES, shown};
 use crate::run::units::{Units, number};
 use crate::run::{ChangedAreas, CompareProduct, VolumeUnit};
@@ -73,7 +72,7 @@ fn of_areas(changed: &ChangedAreas) -> String {
 }
 
 /// Returns exact numbers as JSON.
-pub(crate) fn json(product: &CompareProduct, changed: Option<f64>) -> String {
+pub(crate) fn json(product: &CompareProduct, changed: Option<f64>) -> Value {
     let mut object = Map::new();
     let [plan, height] = Units::of(product.difference.crs.as_ref()).symbols();
     object.insert("plan_unit".to_owned(), plan.into());
@@ -126,5 +125,5 @@ pub(crate) fn json(product: &CompareProduct, changed: Option<f64>) -> String {
         json!({ "x": x, "y": y, "difference": extreme.value })
     });
     object.insert("worst".to_owned(), extremes.collect());
-    escape::json(&format!("{:#}\n", Value::Object(object)))
+    Value::Object(object)
 }

@@ -17,6 +17,8 @@ use crate::run::{Context, Monitor, Notice, Progress, Severity, Size, Stage};
 /// How much is printed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Verbosity {
+    /// Nothing but errors: who calls gets a report.
+    Silent,
     Quiet,
     #[default]
     Normal,
@@ -34,7 +36,7 @@ pub(crate) struct Console {
 impl Console {
     pub(crate) fn new(level: Verbosity) -> Self {
         let target = match level {
-            Verbosity::Quiet => ProgressDrawTarget::hidden(),
+            Verbosity::Silent | Verbosity::Quiet => ProgressDrawTarget::hidden(),
             // Hidden by itself if stderr is not a terminal.
             _ => ProgressDrawTarget::stderr(),
         };
@@ -55,7 +57,9 @@ impl Console {
 
     /// Prints a warning: something is probably not as intended.
     pub(crate) fn warning(&self, text: impl Display) {
-        self.once(format!("warning: {text}"));
+        if self.level > Verbosity::Silent {
+            self.once(format!("warning: {text}"));
+        }
     }
 
     /// Prints a note, unless the run is quiet: a choice that was made for the user, or something

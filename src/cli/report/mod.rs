@@ -1,6 +1,7 @@
 //! What a run prints: messages, progress and the summary.
 
 pub(super) mod accuracy;
+pub(super) mod commands;
 pub(super) mod comparison;
 pub(super) mod console;
 pub(super) mod escape;
@@ -8,6 +9,7 @@ pub(super) mod last_words;
 pub(super) mod names;
 pub(super) mod profiles;
 mod progress;
+pub(super) mod run_plan;
 mod statistics;
 pub(super) mod stdout;
 pub(super) mod summary;

@@ -59,7 +59,7 @@ fn line(stretches: &[Stretch], plan: &str, height: &str) -> String {
 
 /// Returns all points as JSON. A point is `[distance, x, y, z]`; each surface has a list of
 /// stretches without a gap.
-pub(crate) fn json(profiles: &Profiles) -> String {
+pub(crate) fn json(profiles: &Profiles) -> Value {
     let stretch = |stretch: &Stretch| -> Value {
         let point = |p: &crate::data::LinePoint| {
             let [x, y, z] = p.at;
@@ -90,11 +90,10 @@ pub(crate) fn json(profiles: &Profiles) -> String {
     };
     let list: Vec<Value> = profiles.list.iter().map(profile).collect();
     let [unit, height_unit] = &profiles.units;
-    let all = json!({
+    json!({
         "unit": unit,
         "height_unit": height_unit,
         "surfaces": profiles.surfaces,
         "profiles": list,
-    });
-    escape::json(&format!("{all}\n"))
+    })
 }

@@ -18,7 +18,7 @@ pub(crate) fn print_surface(report: &SurfaceReport, console: &Console) {
                 points_line(&built.points, built.sources)
             ));
             if !built.columns.is_empty() {
-                columns_are(&columns_line(&built.columns), console);
+                console.line(columns_are(&columns_line(&built.columns)));
             }
             print_tin(built, console);
             console.line(format_args!(
@@ -174,15 +174,13 @@ fn left_out(tin: &TinReport) -> String {
     ])
 }
 
-/// Prints the columns of a file of text, if it is one.
-pub(crate) fn print_columns(columns: Option<Columns>, console: &Console) {
-    if let Some(columns) = columns {
-        columns_are(&columns.to_string(), console);
-    }
+/// Returns the line about the columns of a file of text, if it is one.
+pub(crate) fn of_columns(columns: Option<Columns>) -> Option<String> {
+    columns.map(|columns| columns_are(&columns.to_string()))
 }
 
-fn columns_are(columns: &str, console: &Console) {
-    console.line(format_args!("columns     {columns}"));
+fn columns_are(columns: &str) -> String {
+    format!("columns     {columns}")
 }
 
 /// Returns the columns of text files, such as "x 3, y 2, z 4"; with the number of files of each if

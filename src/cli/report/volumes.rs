@@ -162,7 +162,7 @@ fn keys(row: &VolumeRow) -> Vec<(&'static str, String)> {
 }
 
 /// Returns exact numbers as JSON.
-pub(crate) fn json(product: &VolumeProduct) -> String {
+pub(crate) fn json(product: &VolumeProduct) -> Value {
     let [of_volumes, of_areas] = match product.unit {
         Some(unit) => unit.symbols().map(Value::from),
         None => [Value::Null, Value::Null],
@@ -185,8 +185,7 @@ pub(crate) fn json(product: &VolumeProduct) -> String {
         Value::Object(object)
     };
     let rows: Vec<Value> = product.rows.iter().map(row).collect();
-    let all = json!({ "unit": of_volumes, "area_unit": of_areas, "rows": rows });
-    escape::json(&format!("{all:#}\n"))
+    json!({ "unit": of_volumes, "area_unit": of_areas, "rows": rows })
 }
 
 /// Returns exact numbers as CSV.

@@ -3,6 +3,8 @@
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 
+use serde_json::{Value, json};
+
 use super::console::Console;
 use super::last_words::LastWords;
 use super::summary::{counted, describe, print_extent, print_surface};
@@ -89,11 +91,7 @@ impl<'a> Shown<'a> {
         }: &Written,
     ) -> Exit {
         let console = self.console;
-        if let Summary::Meshes(meshes) = summary {
-            meshes
-                .iter()
-                .for_each(|(path, mesh)| note_mesh(path, mesh, ".ply keeps them", console));
-        }
+        note_meshes(summary, console);
         let crs = match surface {
             WrittenOf::Whole(report) => {
                 match (&report.origin, summary) {
@@ -110,23 +108,17 @@ impl<'a> Shown<'a> {
                 report.crs.as_ref()
             }
         };
-        match summary {
-            Summary::Heights(cells) => print_heights(cells, crs, console),
-            Summary::Quantity(quantity, cells) => print_quantity(*quantity, cells, crs, console),
-            Summary::Contours(drawn) => print_contours(drawn, crs, console),
-            Summary::Map(map) => print_map(map, crs, console),
-            Summary::Parts(parts) => {
-                let folder = files
-                    .first()
-                    .map(|index| index.with_file_name(&parts.index.folder))
-                    .unwrap_or_default();
-                console.line(format_args!(
-                    "parts       {}, in {}",
-                    parts.index.parts.len(),
-                    folder.display()
-                ));
-            }
-            Summary::Shades | Summary::Meshes(_) => {}
+        print_summary(summary, crs, console);
+        if let Summary::Parts(parts) = summary {
+            let folder = files
+                .first()
+                .map(|index| index.with_file_name(&parts.index.folder))
+                .unwrap_or_default();
+            console.line(format_args!(
+                "parts       {}, in {}",
+                parts.index.parts.len(),
+                folder.display()
+            ));
         }
         files.iter().for_each(|path| print_file(path, console));
         match surface {
@@ -191,6 +183,52 @@ impl Monitor for Shown<'_> {
             | Event::WaitsForJob { .. }
             | Event::GoesOnWithout { .. } => {}
         }
+    }
+}
+
+/// Prints notes about what the formats of meshes do not keep.
+pub(crate) fn note_meshes(summary: &Summary, console: &Console) {
+    if let Summary::Meshes(meshes) = summary {
+        meshes
+            .iter()
+            .for_each(|(path, mesh)| note_mesh(path, mesh, ".ply keeps them", console));
+    }
+}
+
+/// Prints what was made of a surface.
+pub(crate) fn print_summary(summary: &Summary, crs: Option<&Crs>, console: &Console) {
+    match summary {
+        Summary::Heights(cells) => print_heights(cells, crs, console),
+        Summary::Quantity(quantity, cells) => print_quantity(*quantity, cells, crs, console),
+        Summary::Contours(drawn) => print_contours(drawn, crs, console),
+        Summary::Map(map) => print_map(map, crs, console),
+        Summary::Parts(_) | Summary::Shades | Summary::Meshes(_) => {}
+    }
+}
+
+/// Returns what was made of a surface as a JSON object.
+pub(crate) fn summary_json(summary: &Summary) -> Value {
+    let of_cells = |cells: &RasterSummary| {
+        let has_any = cells.valid > 0;
+        json!({
+            "cells": cells.valid,
+            "lowest": has_any.then_some(cells.min),
+            "highest": has_any.then_some(cells.max),
+        })
+    };
+    match summary {
+        Summary::Heights(cells) | Summary::Quantity(_, cells) => of_cells(cells),
+        Summary::Contours(drawn) => json!({ "lines": drawn.lines, "closed": drawn.closed }),
+        Summary::Map(map) => json!({
+            "lines": map.drawn.lines,
+            "closed": map.drawn.closed,
+            "left_out": map.left_out,
+            "deviation": map.deviation,
+            "bands": map.bands,
+            "labels": map.labels,
+        }),
+        Summary::Parts(parts) => json!({ "parts": parts.index.parts.len() }),
+        Summary::Shades | Summary::Meshes(_) => json!({}),
     }
 }
 

@@ -1,17 +1,18 @@
 use std::path::PathBuf;
 
 use super::pair;
+use super::product::{self, Answer, Outcome, Product};
 use crate::cli::Exit;
 use crate::cli::input::args::CompareArgs;
 use crate::cli::input::outputs::{self, Format, Outputs, formats_of};
 use crate::cli::input::plan::{SurfacePlan, frame};
 use crate::cli::report::comparison;
 use crate::cli::report::console::Console;
-use crate::cli::report::stdout::print;
-use crate::cli::report::written::commit;
 use crate::error::{Error, Result};
-use crate::io::formats::Product;
-use crate::run::{self, AreaOptions, CompareOptions};
+use crate::io::OutputSet;
+use crate::io::formats::Product as Formats;
+use crate::run::{self, AreaOptions, CompareOptions, Context, SurfaceProduct};
+use crate::terrain::Method;
 
 /// What is written to a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,65 +23,122 @@ enum Written {
 
 /// Compares two surfaces.
 pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<Exit> {
-    match &args.surface.inputs[..] {
-        [] => return Err(pair::no_surface()),
-        [one] => {
-            return Err(Error::usage("there is nothing to compare it with")
-                .in_file(one)
-                .cure("name a second surface"));
-        }
-        [_, _] => pair::refuse_tables(&args.surface, "compare")?,
-        [_, _, more, ..] => return Err(pair::third(more, "two surfaces")),
-    }
-    let plans = SurfacePlan::resolve_each(&args.surface, console)?;
-    let read: Vec<PathBuf> = pair::files(&plans)
-        .chain(args.frame.align_to.clone())
-        .collect();
-    let output = pair::output(&args.output, args.overwrite);
-    let outputs = outputs::resolve(&output, &formats(), &read)?;
-    let named = |i: usize| args.surface.inputs.get(i).cloned().unwrap_or_default();
-    let options = CompareOptions {
-        frame: args.overviews.of(frame(&args.frame)?),
-        method: args.method.into(),
-        worst: args.worst,
-        areas: areas(args, &outputs)?,
-        names: [named(0), named(1)],
-    };
+    let asked = Comparison::of(args, None, console)?;
     let surfaces = pair::read(
-        &plans,
+        &asked.plans,
         ["surface", "minus"],
         &args.surface,
-        options.method,
+        asked.method(),
         &args.memory,
         console,
     )?;
-    let [first, second] = &surfaces[..] else {
-        return Err(pair::no_surface());
-    };
-    let context = console.context();
-    let product = run::compare([first, second], &options, &context)?;
-    for target in &outputs.targets {
-        let file = target.within(&outputs.set);
-        match (target.kind, &product.areas) {
-            (Written::Areas, Some(areas)) => areas.write(file, &context)?,
-            _ => {
-                let cells = product.cells().with_overviews(options.frame.overviews);
-                cells.write(file, &context)?;
+    let json = args.json.then_some(product::in_lines as _);
+    product::finish(&asked, &surfaces, json, console)
+}
+
+/// A comparison that is asked for.
+pub(super) struct Comparison<'a> {
+    args: &'a CompareArgs,
+    plans: Vec<SurfacePlan>,
+    options: CompareOptions,
+    outputs: Outputs<Written>,
+    reads: Vec<PathBuf>,
+}
+
+impl<'a> Comparison<'a> {
+    /// Returns what is asked for; of the surface `given`, if that is known already.
+    ///
+    /// # Errors
+    /// If files are missing, options do not go together or an output cannot be written.
+    pub(super) fn of(
+        args: &'a CompareArgs,
+        given: Option<&SurfacePlan>,
+        console: &Console,
+    ) -> Result<Self> {
+        match &args.surface.inputs[..] {
+            [] => return Err(pair::no_surface()),
+            [one] => {
+                return Err(Error::usage("there is nothing to compare it with")
+                    .in_file(one)
+                    .cure("name a second surface"));
+            }
+            [_, _] => pair::refuse_tables(&args.surface, "compare")?,
+            [_, _, more, ..] => return Err(pair::third(more, "two surfaces")),
+        }
+        let plans = SurfacePlan::resolve_each(&args.surface, given, console)?;
+        let reads: Vec<PathBuf> = pair::files(&plans)
+            .chain(args.frame.align_to.clone())
+            .collect();
+        let output = pair::output(&args.output, args.overwrite);
+        let outputs = outputs::resolve(&output, &formats(), &reads)?;
+        let named = |i: usize| args.surface.inputs.get(i).cloned().unwrap_or_default();
+        let options = CompareOptions {
+            frame: args.overviews.of(frame(&args.frame)?),
+            method: args.method.into(),
+            worst: args.worst,
+            areas: areas(args, &outputs)?,
+            names: [named(0), named(1)],
+        };
+        Ok(Comparison {
+            args,
+            plans,
+            options,
+            outputs,
+            reads,
+        })
+    }
+}
+
+impl Product for Comparison<'_> {
+    fn surfaces(&self) -> &[SurfacePlan] {
+        &self.plans
+    }
+
+    fn method(&self) -> Method {
+        self.options.method
+    }
+
+    fn reads(&self) -> Vec<PathBuf> {
+        self.reads.clone()
+    }
+
+    fn writes(&self) -> Vec<PathBuf> {
+        product::all_files(&self.outputs, &formats())
+    }
+
+    fn make(
+        &self,
+        surfaces: &[&SurfaceProduct],
+        set: &mut OutputSet,
+        context: &Context,
+    ) -> Result<Outcome> {
+        let [first, second] = surfaces else {
+            return Err(pair::no_surface());
+        };
+        let product = run::compare([first, second], &self.options, context)?;
+        for target in &self.outputs.targets {
+            let file = target.within(set);
+            match (target.kind, &product.areas) {
+                (Written::Areas, Some(areas)) => areas.write(file, context)?,
+                _ => {
+                    let overviews = self.options.frame.overviews;
+                    let cells = product.cells().with_overviews(overviews);
+                    cells.write(file, context)?;
+                }
             }
         }
+        Ok(Outcome::Answer(Answer {
+            text: comparison::text(&product, self.args.changed),
+            json: comparison::json(&product, self.args.changed),
+            ..Answer::default()
+        }))
     }
-    commit(outputs, console)?;
-    print(&match args.json {
-        true => comparison::json(&product, args.changed),
-        false => comparison::text(&product, args.changed),
-    })?;
-    Ok(Exit::Done)
 }
 
 /// Returns the formats of rasters and of polygons.
 fn formats() -> Vec<Format<Written>> {
-    let mut formats = formats_of(Product::Heights, |_| Written::Cells);
-    formats.extend(formats_of(Product::Lines, |_| Written::Areas));
+    let mut formats = formats_of(Formats::Heights, |_| Written::Cells);
+    formats.extend(formats_of(Formats::Lines, |_| Written::Areas));
     formats
 }
 

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use crate::cli::Exit;
 use crate::cli::input::args::{ConsoleArgs, DemoArgs};
+use crate::cli::report::commands::quoted;
 use crate::cli::report::console::Console;
 use crate::error::{Error, Result};
 use crate::io::Output;
@@ -155,16 +156,6 @@ fn in_folder(word: &str, folder: &Path) -> OsString {
     match word.strip_prefix('@') {
         Some(name) => folder.join(name).into_os_string(),
         None => word.into(),
-    }
-}
-
-/// Quotes a word as a shell needs it.
-fn quoted(word: &str) -> String {
-    let is_plain = |c: char| c.is_alphanumeric() || "-_./,:=+".contains(c);
-    if word.chars().all(is_plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', r"'\''"))
     }
 }
 

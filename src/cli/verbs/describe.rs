@@ -226,9 +226,12 @@ mod tests {
                 "sample",
                 "accuracy",
                 "check",
+                "run",
                 "job",
                 "demo",
-                "describe"
+                "describe",
+                "completions",
+                "man"
             ]
         );
         let job = find(&described["verbs"], "job");

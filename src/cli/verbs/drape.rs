@@ -1,65 +1,115 @@
 use std::path::PathBuf;
 
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::pair;
+use super::product::{self, Answer, Outcome, Product};
 use crate::cli::Exit;
 use crate::cli::input::args::DrapeArgs;
+use crate::cli::input::inputs;
+use crate::cli::input::outputs::{self, Outputs};
 use crate::cli::input::plan::SurfacePlan;
-use crate::cli::input::{inputs, outputs};
 use crate::cli::report::console::Console;
-use crate::cli::report::escape;
-use crate::cli::report::stdout::print;
-use crate::cli::report::summary::{counted, print_surface};
-use crate::cli::report::written::commit;
+use crate::cli::report::summary::counted;
 use crate::data::{Layer, Shape};
 use crate::error::Result;
-use crate::io::formats::Product;
-use crate::run::{self, DrapeOptions, DrapeProduct, Input, SurfaceReport};
-use crate::terrain::Method;
+use crate::io::OutputSet;
+use crate::io::formats::Product as Formats;
+use crate::run::{self, Context, DrapeOptions, DrapeProduct, Input, SurfaceProduct};
 
 /// Drapes lines over a surface.
 pub(crate) fn run(args: &DrapeArgs, console: &Console) -> Result<Exit> {
-    inputs::require([&args.lines])?;
-    pair::refuse_tables(&args.surface, "drape")?;
-    let plan = SurfacePlan::resolve(&args.surface, console)?;
-    let mut read = plan.targets.with_lists(plan.request.files());
-    read.push(args.lines.clone());
-    let outputs = outputs::resolve(
-        &args.output,
-        &outputs::formats_of(Product::Lines, |_| ()),
-        &read,
-    )?;
-    let context = console.context();
-    let memory = args.memory.memory;
-    let mut surface = run::open_surface(&plan.request, Method::Linear, memory, &context)?;
-    print_surface(&SurfaceReport::take(&mut surface)?, console);
-    let options = DrapeOptions {
-        lines: Input::File(args.lines.clone()),
-        assign: pair::assigned(&plan),
-        step: args.step,
-        name: args
-            .surface
-            .inputs
-            .first()
-            .cloned()
-            .unwrap_or_else(|| PathBuf::from("of lines")),
-    };
-    let product = run::drape(&surface, &options, &context)?;
-    for target in &outputs.targets {
-        product.write(target.within(&outputs.set), &context)?;
+    let drape = Drape::of(args, console)?;
+    let surface = pair::read_one(&drape.plan[0], drape.method(), &args.memory, console)?;
+    let json = args.json.then_some(product::in_lines as _);
+    product::finish(&drape, &[surface], json, console)
+}
+
+/// Lines that are to be draped.
+pub(super) struct Drape<'a> {
+    args: &'a DrapeArgs,
+    plan: [SurfacePlan; 1],
+    outputs: Outputs<()>,
+    reads: Vec<PathBuf>,
+}
+
+impl<'a> Drape<'a> {
+    /// Returns what is asked for.
+    ///
+    /// # Errors
+    /// If files are missing, options do not go together or an output cannot be written.
+    pub(super) fn of(args: &'a DrapeArgs, console: &Console) -> Result<Self> {
+        inputs::require([&args.lines])?;
+        pair::refuse_tables(&args.surface, "drape")?;
+        let plan = SurfacePlan::resolve(&args.surface, console)?;
+        let mut reads = plan.targets.with_lists(plan.request.files());
+        reads.push(args.lines.clone());
+        let formats = outputs::formats_of(Formats::Lines, |_| ());
+        let outputs = outputs::resolve(&args.output, &formats, &reads)?;
+        Ok(Drape {
+            args,
+            plan: [plan],
+            outputs,
+            reads,
+        })
     }
-    commit(outputs, console)?;
-    let (parts, vertices) = sizes(&product.layer);
-    console.line(format_args!(
-        "lines       {}, {} on the surface with {vertices} vertices",
-        counted(product.layer.shapes.len() as u64, "record"),
-        counted(parts, "part")
-    ));
-    if args.json {
-        print(&as_json(&product))?;
+}
+
+impl Product for Drape<'_> {
+    fn surfaces(&self) -> &[SurfacePlan] {
+        &self.plan
     }
-    Ok(Exit::Done)
+
+    fn reads(&self) -> Vec<PathBuf> {
+        self.reads.clone()
+    }
+
+    fn writes(&self) -> Vec<PathBuf> {
+        product::all_files(&self.outputs, &outputs::formats_of(Formats::Lines, |_| ()))
+    }
+
+    fn make(
+        &self,
+        surfaces: &[&SurfaceProduct],
+        set: &mut OutputSet,
+        context: &Context,
+    ) -> Result<Outcome> {
+        let Drape {
+            args,
+            plan: [plan],
+            outputs,
+            ..
+        } = self;
+        let [surface] = surfaces else {
+            return Err(pair::no_surface());
+        };
+        let options = DrapeOptions {
+            lines: Input::File(args.lines.clone()),
+            assign: pair::assigned(plan),
+            step: args.step,
+            name: args
+                .surface
+                .inputs
+                .first()
+                .cloned()
+                .unwrap_or_else(|| PathBuf::from("of lines")),
+        };
+        let product = run::drape(surface, &options, context)?;
+        for target in &outputs.targets {
+            product.write(target.within(set), context)?;
+        }
+        let (parts, vertices) = sizes(&product.layer);
+        let line = format!(
+            "lines       {}, {} on the surface with {vertices} vertices",
+            counted(product.layer.shapes.len() as u64, "record"),
+            counted(parts, "part")
+        );
+        Ok(Outcome::Answer(Answer {
+            lines: vec![line],
+            json: as_json(&product),
+            ..Answer::default()
+        }))
+    }
 }
 
 /// Returns the numbers of parts and of vertices of the lines of a layer.
@@ -71,14 +121,13 @@ fn sizes(layer: &Layer) -> (u64, u64) {
     lines.fold((0, 0), |sum, of| (sum.0 + of.0, sum.1 + of.1))
 }
 
-fn as_json(product: &DrapeProduct) -> String {
+fn as_json(product: &DrapeProduct) -> Value {
     let (parts, vertices) = sizes(&product.layer);
-    let all = json!({
+    json!({
         "records": product.layer.shapes.len(),
         "parts": parts,
         "vertices": vertices,
         "off": product.off,
         "partly_off": product.partly_off,
-    });
-    escape::json(&format!("{all:#}\n"))
+    })
 }

@@ -66,6 +66,22 @@ pub(super) fn read(
     each.collect()
 }
 
+/// Builds or reads the only surface of a verb for heights by a method, and prints what it is.
+///
+/// # Errors
+/// Those of [`run::open_surface`].
+pub(super) fn read_one(
+    plan: &SurfacePlan,
+    method: Method,
+    memory: &MemoryArgs,
+    console: &Console,
+) -> Result<SurfaceProduct> {
+    let context = console.context();
+    let mut surface = run::open_surface(&plan.request, method, memory.memory, &context)?;
+    print_surface(&SurfaceReport::take(&mut surface)?, console);
+    Ok(surface)
+}
+
 /// Returns an error if tables are asked for that belong to one surface.
 pub(super) fn refuse_tables(args: &SurfaceArgs, verb: &str) -> Result<()> {
     match args.crossing_report.is_some() || args.lines.flat_points.is_some() {

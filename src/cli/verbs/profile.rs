@@ -1,69 +1,130 @@
 use std::path::PathBuf;
 
 use super::pair;
+use super::product::{self, Answer, Outcome, Product};
 use crate::cli::Exit;
 use crate::cli::input::args::ProfileArgs;
+use crate::cli::input::inputs;
+use crate::cli::input::outputs::{self, Outputs};
 use crate::cli::input::plan::SurfacePlan;
-use crate::cli::input::{inputs, outputs};
 use crate::cli::report::console::Console;
 use crate::cli::report::profiles;
-use crate::cli::report::stdout::print;
-use crate::cli::report::written::commit;
 use crate::error::{Error, Result};
-use crate::io::is_standard_output;
 use crate::io::profiles::PlotOptions;
+use crate::io::{OutputSet, is_standard_output};
 use crate::run::targets::PROFILES;
-use crate::run::{self, Input, ProfileOptions, SectionOptions, SectionStations};
+use crate::run::{
+    self, Context, Input, ProfileOptions, SectionOptions, SectionStations, SurfaceProduct,
+};
 use crate::terrain::Method;
 
 /// Computes heights along lines, or along sections across them.
 pub(crate) fn run(args: &ProfileArgs, console: &Console) -> Result<Exit> {
-    let sections = sections(args)?;
-    require_plots(args)?;
-    inputs::require([&args.along])?;
-    let plans = SurfacePlan::resolve_each(&args.surface, console)?;
-    let read: Vec<PathBuf> = pair::files(&plans).chain([args.along.clone()]).collect();
-    let output = pair::output(&args.output, args.overwrite);
-    let outputs = outputs::resolve(&output, PROFILES, &read)?;
-    let is_stdout_taken = args.output.iter().any(|path| is_standard_output(path));
-    if args.json && is_stdout_taken {
-        return Err(
-            Error::usage("a file and the object of --json cannot both be on stdout")
-                .cure("leave one of them out"),
-        );
-    }
+    let asked = ProfileAsked::of(args, None, console)?;
     let surfaces = pair::read(
-        &plans,
+        &asked.plans,
         std::iter::repeat("surface"),
         &args.surface,
         Method::Linear,
         &args.memory,
         console,
     )?;
-    let options = ProfileOptions {
-        along: Input::File(args.along.clone()),
-        assign: plans.first().and_then(pair::assigned),
-        step: args.step,
-        sections,
-        names: args.surface.inputs.clone(),
-    };
-    let surfaces: Vec<_> = surfaces.iter().collect();
-    let product = run::profile(&surfaces, &options, &console.context())?;
-    let plot = PlotOptions {
-        exaggeration: args.exaggeration,
-        datum: args.datum,
-        title: args.title.clone(),
-    };
-    for target in &outputs.targets {
-        product.write(target.within(&outputs.set), &plot)?;
+    let json = args.json.then_some(product::in_one_line as _);
+    product::finish(&asked, &surfaces, json, console)
+}
+
+/// Profiles that are asked for.
+pub(super) struct ProfileAsked<'a> {
+    args: &'a ProfileArgs,
+    plans: Vec<SurfacePlan>,
+    sections: Option<SectionOptions>,
+    outputs: Outputs<()>,
+    reads: Vec<PathBuf>,
+}
+
+impl<'a> ProfileAsked<'a> {
+    /// Returns what is asked for; of the surface `given` first, if that is known already.
+    ///
+    /// # Errors
+    /// If files are missing, options do not go together or an output cannot be written.
+    pub(super) fn of(
+        args: &'a ProfileArgs,
+        given: Option<&SurfacePlan>,
+        console: &Console,
+    ) -> Result<Self> {
+        let sections = sections(args)?;
+        require_plots(args)?;
+        inputs::require([&args.along])?;
+        let plans = SurfacePlan::resolve_each(&args.surface, given, console)?;
+        let reads: Vec<PathBuf> = pair::files(&plans).chain([args.along.clone()]).collect();
+        let output = pair::output(&args.output, args.overwrite);
+        let outputs = outputs::resolve(&output, PROFILES, &reads)?;
+        if args.json && is_stdout_taken(args) {
+            return Err(
+                Error::usage("a file and the object of --json cannot both be on stdout")
+                    .cure("leave one of them out"),
+            );
+        }
+        Ok(ProfileAsked {
+            args,
+            plans,
+            sections,
+            outputs,
+            reads,
+        })
     }
-    commit(outputs, console)?;
-    match args.json {
-        true => print(&profiles::json(&product.profiles))?,
-        false if is_stdout_taken => {}
-        false => print(&profiles::text(&product.profiles))?,
+}
+
+impl Product for ProfileAsked<'_> {
+    fn surfaces(&self) -> &[SurfacePlan] {
+        &self.plans
     }
-    Ok(Exit::Done)
+
+    fn reads(&self) -> Vec<PathBuf> {
+        self.reads.clone()
+    }
+
+    fn writes(&self) -> Vec<PathBuf> {
+        product::all_files(&self.outputs, PROFILES)
+    }
+
+    fn make(
+        &self,
+        surfaces: &[&SurfaceProduct],
+        set: &mut OutputSet,
+        context: &Context,
+    ) -> Result<Outcome> {
+        let args = self.args;
+        let options = ProfileOptions {
+            along: Input::File(args.along.clone()),
+            assign: self.plans.first().and_then(pair::assigned),
+            step: args.step,
+            sections: self.sections.clone(),
+            names: args.surface.inputs.clone(),
+        };
+        let product = run::profile(surfaces, &options, context)?;
+        let plot = PlotOptions {
+            exaggeration: args.exaggeration,
+            datum: args.datum,
+            title: args.title.clone(),
+        };
+        for target in &self.outputs.targets {
+            product.write(target.within(set), &plot)?;
+        }
+        let text = match is_stdout_taken(args) {
+            true => String::new(),
+            false => profiles::text(&product.profiles),
+        };
+        Ok(Outcome::Answer(Answer {
+            text,
+            json: profiles::json(&product.profiles),
+            ..Answer::default()
+        }))
+    }
+}
+
+fn is_stdout_taken(args: &ProfileArgs) -> bool {
+    args.output.iter().any(|path| is_standard_output(path))
 }
 
 /// Returns an error if there is an option of plots, but no plot.

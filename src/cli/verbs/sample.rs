@@ -1,22 +1,25 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use serde_json::json;
+use serde_json::{Value, json};
 
 use super::pair;
+use super::product::{self, Answer, Outcome, Product};
 use crate::cli::Exit;
 use crate::cli::input::args::{SampleArgs, SurfaceArgs};
 use crate::cli::input::inputs;
-use crate::cli::input::outputs::{self, Format};
+use crate::cli::input::outputs::{self, Format, Outputs};
 use crate::cli::input::plan::SurfacePlan;
 use crate::cli::report::console::Console;
-use crate::cli::report::stdout::{Stdout, print};
-use crate::cli::report::summary::{counted, print_columns, print_surface};
-use crate::cli::report::written::commit;
+use crate::cli::report::stdout::Stdout;
+use crate::cli::report::summary::{counted, of_columns};
 use crate::error::{Error, Result};
+use crate::io::OutputSet;
 use crate::run::{
-    self, STDIN, SampleOptions, SampleReport, SampleTarget, SampledField, Source, SurfaceReport,
+    self, Context, STDIN, SampleOptions, SampleReport, SampleTarget, SampledField, Source,
+    SurfaceProduct,
 };
+use crate::terrain::Method;
 
 /// The formats of points that values are added to.
 const FORMATS: &[Format<()>] = &[
@@ -40,52 +43,116 @@ const fn format(extension: &'static str, companions: &'static [&'static str]) ->
 
 /// Adds heights and slopes of a surface to points.
 pub(crate) fn run(args: &SampleArgs, console: &Console) -> Result<Exit> {
-    let (plan, read) = plan(&args.surface, &args.at, console)?;
-    let output = pair::output(&args.output, args.overwrite);
-    let outputs = outputs::resolve(&output, FORMATS, &read)?;
-    let context = console.context();
-    let mut surface = run::open_surface(
-        &plan.request,
-        args.method.into(),
-        args.memory.memory,
-        &context,
-    )?;
-    print_surface(&SurfaceReport::take(&mut surface)?, console);
-    let options = SampleOptions {
-        add: added(args)?,
-        prefix: args.prefix.clone(),
-        method: args.method.into(),
-        read: args.surface.read.options(),
-        assign: pair::assigned(&plan),
-        surface: args.surface.inputs.first().cloned().unwrap_or_default(),
-    };
-    let sample = |target: SampleTarget| run::sample(&surface, &args.at, &options, target, &context);
-    let report = match &outputs.targets[..] {
-        [target, ..] => sample(SampleTarget::File(target.within(&outputs.set)))?,
-        [] => {
-            let mut out = Stdout::new();
-            let done = sample(SampleTarget::Stream(&mut out));
-            match done.and_then(|report| Ok((report, out.flush()?))) {
-                Ok((report, ())) => report,
-                Err(_) if out.is_closed() => return Ok(Exit::Done),
-                Err(error) => return Err(error),
-            }
+    let asked = Sample::of(args, console)?;
+    let surface = pair::read_one(&asked.plan[0], asked.method(), &args.memory, console)?;
+    if !asked.outputs.targets.is_empty() {
+        let json = args.json.then_some(product::in_lines as _);
+        return product::finish(&asked, &[surface], json, console);
+    }
+    let mut out = Stdout::new();
+    let done = asked.sample(&surface, SampleTarget::Stream(&mut out), &console.context());
+    match done.and_then(|report| Ok((report, out.flush()?))) {
+        Ok((report, ())) => {
+            lines_of(&report).iter().for_each(|line| console.line(line));
+            Ok(Exit::Done)
         }
-    };
+        Err(_) if out.is_closed() => Ok(Exit::Done),
+        Err(error) => Err(error),
+    }
+}
+
+/// Points that values are to be added to.
+pub(super) struct Sample<'a> {
+    args: &'a SampleArgs,
+    plan: [SurfacePlan; 1],
+    add: Vec<SampledField>,
+    outputs: Outputs<()>,
+    reads: Vec<PathBuf>,
+}
+
+impl<'a> Sample<'a> {
+    /// Returns what is asked for.
+    ///
+    /// # Errors
+    /// If files are missing, options do not go together or the output cannot be written.
+    pub(super) fn of(args: &'a SampleArgs, console: &Console) -> Result<Self> {
+        let (plan, reads) = plan(&args.surface, &args.at, console)?;
+        let output = pair::output(&args.output, args.overwrite);
+        let outputs = outputs::resolve(&output, FORMATS, &reads)?;
+        Ok(Sample {
+            args,
+            plan: [plan],
+            add: added(args)?,
+            outputs,
+            reads,
+        })
+    }
+
+    fn sample(
+        &self,
+        surface: &SurfaceProduct,
+        target: SampleTarget,
+        context: &Context,
+    ) -> Result<SampleReport> {
+        let args = self.args;
+        let options = SampleOptions {
+            add: self.add.clone(),
+            prefix: args.prefix.clone(),
+            method: self.method(),
+            read: args.surface.read.options(),
+            assign: pair::assigned(&self.plan[0]),
+            surface: args.surface.inputs.first().cloned().unwrap_or_default(),
+        };
+        run::sample(surface, &args.at, &options, target, context)
+    }
+}
+
+impl Product for Sample<'_> {
+    fn surfaces(&self) -> &[SurfacePlan] {
+        &self.plan
+    }
+
+    fn method(&self) -> Method {
+        self.args.method.into()
+    }
+
+    fn reads(&self) -> Vec<PathBuf> {
+        self.reads.clone()
+    }
+
+    fn writes(&self) -> Vec<PathBuf> {
+        product::all_files(&self.outputs, FORMATS)
+    }
+
+    fn make(
+        &self,
+        surfaces: &[&SurfaceProduct],
+        set: &mut OutputSet,
+        context: &Context,
+    ) -> Result<Outcome> {
+        let ([surface], [target]) = (surfaces, &self.outputs.targets[..]) else {
+            return Err(Error::usage("no output is named").cure("name it with --output"));
+        };
+        let report = self.sample(surface, SampleTarget::File(target.within(set)), context)?;
+        Ok(Outcome::Answer(Answer {
+            lines: lines_of(&report),
+            json: json_of(&report),
+            ..Answer::default()
+        }))
+    }
+}
+
+/// Returns the lines of the summary.
+fn lines_of(report: &SampleReport) -> Vec<String> {
     let outside = match report.outside {
         0 => String::new(),
         outside => format!(", {outside} outside"),
     };
-    print_columns(report.read, console);
-    console.line(format_args!(
-        "sampled     {}{outside}",
-        counted(report.points, "point")
-    ));
-    commit(outputs, console)?;
-    if args.json {
-        print(&json_of(&report))?;
-    }
-    Ok(Exit::Done)
+    let sampled = format!("sampled     {}{outside}", counted(report.points, "point"));
+    of_columns(report.read)
+        .into_iter()
+        .chain([sampled])
+        .collect()
 }
 
 /// Returns the request for a surface that is compared with the points of a file, and all files that
@@ -146,11 +213,10 @@ fn added(args: &SampleArgs) -> Result<Vec<SampledField>> {
     }
 }
 
-fn json_of(report: &SampleReport) -> String {
-    let all = json!({
+fn json_of(report: &SampleReport) -> Value {
+    json!({
         "points": report.points,
         "outside": report.outside,
         "columns": report.columns,
-    });
-    format!("{all:#}\n")
+    })
 }

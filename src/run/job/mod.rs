@@ -654,7 +654,7 @@ fn other_version(folder: &Path) -> Error {
 /// # Errors
 /// If it cannot be done in tiles, or a file cannot be opened.
 pub fn needs_tiles(wanted: &WriteRequest, memory: Option<u64>, context: &Context) -> Result<bool> {
-    let (points, systems) = tiled(wanted)?;
+    let (points, _) = tiled(wanted)?;
     plan::require_tiled(points)?;
     let memory = memory.unwrap_or_else(crate::run::context::memory::half_of_free);
     // Opening a layer reads it. A point takes a byte at least, so the lengths nearly always
@@ -667,6 +667,17 @@ pub fn needs_tiles(wanted: &WriteRequest, memory: Option<u64>, context: &Context
     if crate::run::context::memory::need_of(bytes) <= memory {
         return Ok(false);
     }
+    let count = points_used(wanted, context)?;
+    Ok(crate::run::context::memory::need_of(count) > memory)
+}
+
+/// Returns about how many points a request uses, as far as headers say. With bounds, what is far
+/// from them does not count.
+///
+/// # Errors
+/// If it is not of points, or a file cannot be opened.
+pub(super) fn points_used(wanted: &WriteRequest, context: &Context) -> Result<u64> {
+    let (points, systems) = tiled(wanted)?;
     let files = PointFiles::open(&points.points, points.read, &Journal::new(&context.quiet()))?;
     // Where reprojected files are is not known from headers alone.
     let by_file = vec![systems.target.as_ref().map(|_| 0); points.points.len()];
@@ -675,6 +686,5 @@ pub fn needs_tiles(wanted: &WriteRequest, memory: Option<u64>, context: &Context
         let of_text = || planned_file::points_of_text(input.path());
         extent.points = Some(extent.points.unwrap_or_else(of_text));
     }
-    let count = tin::used_at_first(points, wanted.verb.method(), &extents);
-    Ok(crate::run::context::memory::need_of(count) > memory)
+    Ok(tin::used_at_first(points, wanted.verb.method(), &extents))
 }

@@ -375,14 +375,20 @@ pub fn triangles_for(
     request: &SurfaceRequest,
     context: &Context,
 ) -> Result<SurfaceProduct> {
-    if let Source::Raster(path) = &request.source {
-        return Err(
-            Error::usage("the input is a raster; points, a .tin or a .ply are needed")
-                .in_file(path)
-                .cure("`contour` and `hillshade` take rasters"),
-        );
-    }
+    require_triangles(&request.source)?;
     surface_for(method, request, context)
+}
+
+/// Returns an error if the source of a surface is a raster.
+pub(crate) fn require_triangles(source: &Source) -> Result<()> {
+    match source {
+        Source::Raster(path) => Err(Error::usage(
+            "the input is a raster; points, a .tin or a .ply are needed",
+        )
+        .in_file(path)
+        .cure("`contour` and `hillshade` take rasters")),
+        Source::Points(_) | Source::Mesh(_) => Ok(()),
+    }
 }
 
 /// Reads a raster, in the coordinate system that it states or that is assigned. A large one stays

@@ -12,7 +12,7 @@ use crate::run::context::Context;
 use crate::run::context::notice::Notice;
 use crate::run::products::contour::{self, ContourOptions};
 use crate::run::products::contour_map::contour_map;
-use crate::run::products::surface::{self, SurfaceProduct, SurfaceRequest};
+use crate::run::products::surface::{Source, SurfaceProduct};
 
 impl Verb for ContourOptions {
     fn name(&self) -> &'static str {
@@ -62,8 +62,8 @@ impl Verb for ContourOptions {
         }))
     }
 
-    fn surface(&self, request: &SurfaceRequest, context: &Context) -> Result<SurfaceProduct> {
-        surface::surface(request, context)
+    fn takes(&self, _source: &Source) -> Result<()> {
+        Ok(())
     }
 
     fn write(

@@ -11,7 +11,7 @@ use crate::error::{Result, Setting};
 use crate::io::formats::Product;
 use crate::run::context::{Context, Journal};
 use crate::run::products::cells::{self, CellProduct, HillshadeOptions, LightOptions};
-use crate::run::products::surface::{self, SurfaceProduct, SurfaceRequest};
+use crate::run::products::surface::{Source, SurfaceProduct};
 use crate::terrain::Method;
 
 impl Verb for HillshadeOptions {
@@ -62,8 +62,8 @@ impl Verb for HillshadeOptions {
         }))
     }
 
-    fn surface(&self, request: &SurfaceRequest, context: &Context) -> Result<SurfaceProduct> {
-        surface::surface_for(self.method, request, context)
+    fn takes(&self, _source: &Source) -> Result<()> {
+        Ok(())
     }
 
     fn write(

@@ -32,7 +32,7 @@ use crate::run::context::Context;
 use crate::run::products::contour::ContourOptions;
 use crate::run::products::contour_map::MapSummary;
 use crate::run::products::frame::FrameOptions;
-use crate::run::products::surface::{self, SurfaceProduct, SurfaceRequest};
+use crate::run::products::surface::{self, Source, SurfaceProduct, SurfaceRequest};
 use crate::run::sources::tin_parts::WrittenParts;
 use crate::terrain::{GradientSource, Method, Quantity};
 
@@ -59,6 +59,27 @@ impl WriteRequest {
         let mut files = self.surface.files();
         files.extend(self.verb.also_reads().cloned());
         files
+    }
+
+    /// Builds or reads the surface that is written.
+    pub(super) fn open(&self, context: &Context) -> Result<SurfaceProduct> {
+        self.verb.takes(&self.surface.source)?;
+        let given = surface::surface_for(self.verb.method(), &self.surface, context)?;
+        let other = self.instead_of(&given, context)?;
+        Ok(other.unwrap_or(given))
+    }
+
+    /// Returns the surface that the verb writes in place of one that was built or read, if it does.
+    pub(super) fn instead_of(
+        &self,
+        given: &SurfaceProduct,
+        context: &Context,
+    ) -> Result<Option<SurfaceProduct>> {
+        let other = self.verb.instead_of(given, context);
+        other.map_err(|error| match &self.surface.files()[..] {
+            [file] => error.in_file(file),
+            _ => error,
+        })
     }
 }
 
@@ -106,12 +127,26 @@ pub trait Verb: Any + Debug + Send + Sync {
         Ok(TileUse::Optional)
     }
 
-    /// Builds or reads the surface.
+    /// Returns an error if the verb makes nothing of such a source. By default, it makes something
+    /// of all but rasters.
     ///
     /// # Errors
-    /// Those of [`triangles_for`](surface::triangles_for).
-    fn surface(&self, request: &SurfaceRequest, context: &Context) -> Result<SurfaceProduct> {
-        surface::triangles_for(self.method(), request, context)
+    /// Names the file.
+    fn takes(&self, source: &Source) -> Result<()> {
+        surface::require_triangles(source)
+    }
+
+    /// Returns the surface that is written in place of the one that was built or read; `None` if
+    /// that one is.
+    ///
+    /// # Errors
+    /// If it cannot be made, or the run is canceled.
+    fn instead_of(
+        &self,
+        _given: &SurfaceProduct,
+        _context: &Context,
+    ) -> Result<Option<SurfaceProduct>> {
+        Ok(None)
     }
 
     /// Writes what is made of a surface in memory.

@@ -11,7 +11,7 @@ use crate::error::{Result, Setting};
 use crate::io::formats::Product;
 use crate::run::context::{Context, Journal};
 use crate::run::products::cells::{self, CellProduct, QuantityOptions};
-use crate::run::products::surface::{self, SurfaceProduct, SurfaceRequest};
+use crate::run::products::surface::{Source, SurfaceProduct};
 use crate::terrain::{Method, Quantity};
 
 impl Verb for QuantityOptions {
@@ -59,8 +59,8 @@ impl Verb for QuantityOptions {
         }))
     }
 
-    fn surface(&self, request: &SurfaceRequest, context: &Context) -> Result<SurfaceProduct> {
-        surface::surface_for(self.method, request, context)
+    fn takes(&self, _source: &Source) -> Result<()> {
+        Ok(())
     }
 
     fn write(

@@ -11,7 +11,7 @@ use crate::error::{Result, Setting};
 use crate::io::formats::Product;
 use crate::run::context::{Context, Journal};
 use crate::run::products::relief::{self, ColorReliefOptions};
-use crate::run::products::surface::{self, SurfaceProduct, SurfaceRequest};
+use crate::run::products::surface::{Source, SurfaceProduct};
 use crate::terrain::Method;
 
 impl Verb for ColorReliefOptions {
@@ -51,8 +51,8 @@ impl Verb for ColorReliefOptions {
         }))
     }
 
-    fn surface(&self, request: &SurfaceRequest, context: &Context) -> Result<SurfaceProduct> {
-        surface::surface_for(self.method, request, context)
+    fn takes(&self, _source: &Source) -> Result<()> {
+        Ok(())
     }
 
     fn write(

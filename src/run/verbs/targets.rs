@@ -1,5 +1,7 @@
 //! The files of results, checked before the work starts.
 
+#[cfg(feature = "cli")]
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result, Setting, wording};
@@ -64,7 +66,7 @@ impl Targets {
     }
 
     /// Returns the tables that are written with the results.
-    fn tables(&self) -> impl Iterator<Item = &Path> {
+    pub(crate) fn tables(&self) -> impl Iterator<Item = &Path> {
         [&self.crossings, &self.replaced]
             .into_iter()
             .flatten()
@@ -421,6 +423,51 @@ fn extension_of(name: &str) -> String {
         true => String::new(),
         false => format!(".{}", extension.to_string_lossy()),
     }
+}
+
+/// The files of one of several products.
+#[cfg(feature = "cli")]
+#[derive(Debug, Default)]
+pub(crate) struct ProductFiles {
+    pub(crate) writes: Vec<PathBuf>,
+    pub(crate) reads: Vec<PathBuf>,
+}
+
+/// Makes sure that what each of several products writes is not written or read by another one.
+/// Returns an error with the number of the product that it is about.
+#[cfg(feature = "cli")]
+pub(crate) fn require_apart(products: &[ProductFiles]) -> std::result::Result<(), (usize, Error)> {
+    let mut written: HashSet<PathBuf> = HashSet::new();
+    for (number, product) in products.iter().enumerate() {
+        // Of equal names one would be missing at the end.
+        let absolute =
+            |path: &PathBuf| identity(folder_of(path)).join(path.file_name().unwrap_or_default());
+        let own: HashSet<PathBuf> = product.writes.iter().map(absolute).collect();
+        let again = |path: &&PathBuf| {
+            written.contains(&absolute(path)) || written.contains(&identity(path))
+        };
+        if let Some(path) = product.writes.iter().find(again) {
+            let error = Error::usage("another product writes this file, too").in_file(path);
+            return Err((number, error.cure("give one of them another name")));
+        }
+        written.extend(own);
+        written.extend(product.writes.iter().map(|path| identity(path)));
+    }
+    for (number, product) in products.iter().enumerate() {
+        let own: HashSet<&PathBuf> = product.reads.iter().collect();
+        let others = products.iter().flat_map(|other| &other.reads);
+        let others: HashSet<&PathBuf> = others.filter(|read| !own.contains(read)).collect();
+        let others: Vec<PathBuf> = others.into_iter().cloned().collect();
+        let refused = |path: &PathBuf| {
+            require_no_input(path, &others).and_then(|()| require_not_read_along(path, &others))
+        };
+        product
+            .writes
+            .iter()
+            .try_for_each(refused)
+            .map_err(|error| (number, error))?;
+    }
+    Ok(())
 }
 
 /// Makes sure that a file and its companions can be written, and that nothing is lost by it.

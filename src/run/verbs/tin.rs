@@ -12,7 +12,7 @@ use crate::io::formats::{self, Product};
 use crate::io::mesh::MeshSummary;
 use crate::run::context::Context;
 use crate::run::products::simplified::simplify;
-use crate::run::products::surface::{self, Source, SurfaceProduct, SurfaceRequest};
+use crate::run::products::surface::{self, Source, SurfaceProduct};
 use crate::terrain::SimplifyRule;
 
 /// Options of writing a surface.
@@ -80,30 +80,29 @@ impl Verb for SurfaceOptions {
         }
     }
 
-    fn surface(&self, request: &SurfaceRequest, context: &Context) -> Result<SurfaceProduct> {
-        match &self.simplify {
-            Some(rule) => {
-                let given = surface::surface(request, context)?;
-                let in_file = |error: Error| match &request.files()[..] {
-                    [file] => error.in_file(file),
-                    _ => error,
-                };
-                simplify(&given, rule, context).map_err(in_file)
-            }
-            None => match &request.source {
-                Source::Raster(path) => Err(Error::usage(
-                    "a raster is simplified when it becomes a TIN, and no limit is given",
-                )
-                .in_file(path)
-                .cure(wording![
-                    "pass ",
-                    Setting::MaxError.number("HEIGHT"),
-                    " or ",
-                    Setting::Target.number("N")
-                ])),
-                _ => surface::triangles(request, context),
-            },
+    fn takes(&self, source: &Source) -> Result<()> {
+        match source {
+            Source::Raster(path) if self.simplify.is_none() => Err(Error::usage(
+                "a raster is simplified when it becomes a TIN, and no limit is given",
+            )
+            .in_file(path)
+            .cure(wording![
+                "pass ",
+                Setting::MaxError.number("HEIGHT"),
+                " or ",
+                Setting::Target.number("N")
+            ])),
+            _ => Ok(()),
         }
+    }
+
+    fn instead_of(
+        &self,
+        given: &SurfaceProduct,
+        context: &Context,
+    ) -> Result<Option<SurfaceProduct>> {
+        let simplified = |rule| simplify(given, rule, context);
+        self.simplify.as_ref().map(simplified).transpose()
     }
 
     fn use_of_tiles(&self, targets: &[Target]) -> Result<TileUse> {

@@ -372,9 +372,30 @@ fn already_written(job: &Job, targets: &Targets, context: &Context) -> Result<Op
 }
 
 /// Checks the outputs of a request. Files in `own` may be replaced.
-fn resolved(request: &WriteRequest, targets: &Targets, own: &OwnFiles) -> Result<Outputs> {
+pub(super) fn resolved(
+    request: &WriteRequest,
+    targets: &Targets,
+    own: &OwnFiles,
+) -> Result<Outputs> {
     let read = targets.with_lists(request.files());
     targets.resolve(request.verb.product(), &read, &|file| own.has(file))
+}
+
+/// Returns the error for targets that tiles do not have.
+pub(super) fn refused(targets: &Targets) -> Option<Error> {
+    let Targets {
+        crossings,
+        replaced,
+        ..
+    } = targets;
+    let tables = [
+        (crossings, NotInTiles::CrossingReport),
+        (replaced, NotInTiles::ReplacedPoints),
+    ];
+    tables
+        .into_iter()
+        .find(|(table, _)| table.is_some())
+        .map(|(_, what)| what.into())
 }
 
 /// A request whose outputs are checked.
@@ -417,26 +438,9 @@ impl<'a> Prepared<'a> {
         })
     }
 
-    /// Returns the error for what was asked for that tiles do not have.
-    fn refused(&self) -> Option<Error> {
-        let Targets {
-            crossings,
-            replaced,
-            ..
-        } = self.targets;
-        let tables = [
-            (crossings, NotInTiles::CrossingReport),
-            (replaced, NotInTiles::ReplacedPoints),
-        ];
-        tables
-            .into_iter()
-            .find(|(table, _)| table.is_some())
-            .map(|(_, what)| what.into())
-    }
-
     /// Returns true if the request has to be worked on in tiles.
     fn needs_tiles(&self, memory: Option<u64>, context: &Context) -> bool {
-        match (&self.use_of_tiles, self.refused()) {
+        match (&self.use_of_tiles, refused(self.targets)) {
             (TileUse::Always, _) => true,
             (TileUse::Never(error), _) => {
                 let cure = error.cure_text().map(|cure| wording![": ", cure.clone()]);
@@ -450,14 +454,14 @@ impl<'a> Prepared<'a> {
 
     fn whole(self, context: &Context) -> Result<WriteReport> {
         let Prepared {
-            request: WriteRequest { surface, verb },
+            request,
             targets,
             outputs,
             ..
         } = self;
-        let mut product = verb.surface(surface, context)?;
+        let mut product = request.open(context)?;
         targets.write_tables(&product, &outputs.set)?;
-        let summary = verb.write(&product, &outputs, context)?;
+        let summary = request.verb.write(&product, &outputs, context)?;
         let surface = WrittenOf::Whole(Box::new(SurfaceReport::take(&mut product)?));
         // Its memory is not needed while the disk is waited for.
         drop(product);
@@ -474,7 +478,7 @@ impl<'a> Prepared<'a> {
     fn in_tiles(self) -> Result<Self> {
         match self.use_of_tiles {
             TileUse::Never(error) => Err(error),
-            TileUse::Optional | TileUse::Always => self.refused().map_or(Ok(self), Err),
+            TileUse::Optional | TileUse::Always => refused(self.targets).map_or(Ok(self), Err),
         }
     }
 

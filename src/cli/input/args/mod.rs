@@ -12,6 +12,7 @@ mod profile;
 mod quantity;
 mod reading;
 mod relief;
+mod run;
 mod sample;
 mod surface;
 mod switches;
@@ -41,6 +42,7 @@ pub(crate) use quantity::{
     TriArgs,
 };
 pub(crate) use relief::ColorReliefArgs;
+pub(crate) use run::{CompletionsArgs, ManArgs, RunArgs};
 pub(crate) use sample::SampleArgs;
 pub(crate) use surface::{CrossingZArg, DuplicatesArg, OnCrossingArg, SurfaceArgs};
 pub(crate) use switches::expand_switches;
@@ -142,9 +144,12 @@ pub(crate) enum Verb {
     Sample(SampleArgs),
     Accuracy(AccuracyArgs),
     Check(CheckArgs),
+    Run(RunArgs),
     Job(JobArgs),
     Demo(DemoArgs),
     Describe(DescribeArgs),
+    Completions(CompletionsArgs),
+    Man(ManArgs),
 }
 
 #[cfg(test)]

@@ -35,6 +35,7 @@ pub(crate) struct ColorReliefArgs {
     #[arg(
         long,
         value_name = "RAMP",
+        value_hint = clap::ValueHint::FilePath,
         default_value = "elevation",
         help_heading = "Colors"
     )]

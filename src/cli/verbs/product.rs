@@ -1,0 +1,130 @@
+//! What verbs make of surfaces, whoever built these: one run, or one that several products share.
+
+use std::path::PathBuf;
+
+use serde_json::Value;
+
+use crate::cli::Exit;
+use crate::cli::input::outputs::Outputs;
+use crate::cli::input::plan::SurfacePlan;
+use crate::cli::report::console::Console;
+use crate::cli::report::escape;
+use crate::cli::report::stdout::print;
+use crate::cli::report::written::print_file;
+use crate::error::{Error, Result};
+use crate::io::OutputSet;
+use crate::io::formats::with_companions;
+use crate::run::targets::Format;
+use crate::run::{Context, Summary, SurfaceProduct};
+use crate::terrain::Method;
+
+/// A verb whose options are understood and whose outputs are checked.
+pub(super) trait Product {
+    /// Returns the surfaces that it is made of, the one to which most options belong first.
+    fn surfaces(&self) -> &[SurfacePlan];
+
+    /// Returns how heights between vertices are computed.
+    fn method(&self) -> Method {
+        Method::Linear
+    }
+
+    /// Returns why the surface has to be built in one piece, if it has to.
+    fn needs_whole(&self) -> Option<Error> {
+        None
+    }
+
+    /// Returns all files that are read.
+    fn reads(&self) -> Vec<PathBuf>;
+
+    /// Returns all files that are written.
+    fn writes(&self) -> Vec<PathBuf>;
+
+    /// Makes it of the surfaces, and adds its files to a set.
+    ///
+    /// # Errors
+    /// If it cannot be made or written, or the run is canceled.
+    fn make(
+        &self,
+        surfaces: &[&SurfaceProduct],
+        set: &mut OutputSet,
+        context: &Context,
+    ) -> Result<Outcome>;
+}
+
+/// What is reported of a product.
+pub(super) enum Outcome {
+    /// Counts of what was written.
+    Written(Summary),
+    /// An answer.
+    Answer(Answer),
+}
+
+/// What is reported of a product that is asked for its result, and not only for files.
+#[derive(Default)]
+pub(super) struct Answer {
+    /// Lines of the summary.
+    pub(super) lines: Vec<String>,
+    /// What stdout has for people.
+    pub(super) text: String,
+    /// What it has for programs.
+    pub(super) json: Value,
+    /// True if a limit that was asked for is not met.
+    pub(super) is_failure: bool,
+}
+
+/// Returns the files that are written to targets, each followed by those that its format writes
+/// beside.
+pub(super) fn all_files<F>(outputs: &Outputs<F>, formats: &[Format<F>]) -> Vec<PathBuf> {
+    let files = outputs.targets.iter().flat_map(|target| {
+        let is_own = |format: &&Format<F>| format.extension == target.extension;
+        let beside = formats
+            .iter()
+            .find(is_own)
+            .map_or(&[][..], |format| format.companions);
+        with_companions(&target.path, target.extension, beside)
+    });
+    files.map(|(path, _)| path).collect()
+}
+
+/// Makes a product of its surfaces, which are built, and reports it; as an object in the form that
+/// `json` returns, if there is one.
+///
+/// # Errors
+/// Those of [`Product::make`], and if the files cannot appear.
+pub(super) fn finish(
+    product: &dyn Product,
+    surfaces: &[SurfaceProduct],
+    json: Option<fn(&Value) -> String>,
+    console: &Console,
+) -> Result<Exit> {
+    let surfaces: Vec<&SurfaceProduct> = surfaces.iter().collect();
+    let mut set = OutputSet::default();
+    let outcome = product.make(&surfaces, &mut set, &console.context())?;
+    let files = set.commit()?;
+    files.iter().for_each(|path| print_file(path, console));
+    let Outcome::Answer(answer) = outcome else {
+        return Ok(Exit::Done);
+    };
+    answer
+        .lines
+        .iter()
+        .for_each(|line| console.line(format_args!("{line}")));
+    match json {
+        Some(json) => print(&json(&answer.json))?,
+        None => print(&answer.text)?,
+    }
+    Ok(match answer.is_failure {
+        true => Exit::Failed,
+        false => Exit::Done,
+    })
+}
+
+/// Returns an object as it is printed, a line for each value.
+pub(super) fn in_lines(object: &Value) -> String {
+    escape::json(&format!("{object:#}\n"))
+}
+
+/// Returns an object as it is printed, in one line: it has lists of many numbers.
+pub(super) fn in_one_line(object: &Value) -> String {
+    escape::json(&format!("{object}\n"))
+}
