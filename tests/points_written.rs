@@ -682,9 +682,12 @@ fn reprojected_points_are_within_half_a_step_and_keep_their_attributes() {
             .unwrap();
             assert_eq!(report.crs, system(code));
             let (before, after) = (read(&path).unwrap(), read(&target).unwrap());
-            let there =
-                breakline::run::proj::transform(&system(25832).unwrap(), &system(code).unwrap())
-                    .unwrap();
+            let there = breakline::run::proj::transform(
+                &system(25832).unwrap(),
+                &system(code).unwrap(),
+                &Default::default(),
+            )
+            .unwrap();
             expected.copy_from_slice(&coordinates(&path));
             there.transform(&mut expected).unwrap();
             for (found, expected) in coordinates(&target).iter().zip(&expected) {

@@ -6,6 +6,7 @@ use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use breakline::data::classes;
 use breakline::io::las::Rounding;
 use breakline::io::{Destination, formats};
+use breakline::run::proj::TransformOptions;
 use breakline::run::{
     self, Alpha, Arithmetic, PointsReport, PointsRequest, SpaceOptions, TriangulateOptions,
     Withheld,
@@ -36,6 +37,26 @@ pub(crate) fn info(
     work::run(py, &call, |context| -> Result<_> {
         let facts = run::facts(&file, options, context).map_err(|e| e.in_file(&file))?;
         Ok(cli::facts_as_json(&file, &facts))
+    })
+}
+
+/// Returns what a coordinate system is, or the operations from it to another, as JSON.
+#[pyfunction]
+pub(crate) fn crs(
+    py: Python<'_>,
+    from: String,
+    to: Option<String>,
+    at: Option<Vec<f64>>,
+    options: (bool, Option<f64>),
+    call: Call,
+) -> PyResult<String> {
+    let (require_grids, epoch) = options;
+    let options = TransformOptions {
+        require_grids,
+        epoch,
+    };
+    work::run(py, &call, |context| -> Result<_> {
+        Ok(cli::systems_as_json(&from, to.as_deref(), at.as_deref(), &options, context)?)
     })
 }
 

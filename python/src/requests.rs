@@ -10,6 +10,7 @@ use breakline::data::{
 use breakline::io::OnDamage;
 use breakline::io::geotiff::Overviews;
 use breakline::io::points;
+use breakline::run::proj::TransformOptions;
 use breakline::run::{
     self, ColorReliefOptions, Degrees, EdgeLimit, FlatOptions, FlatRule, FrameOptions, Input,
     LightOptions, LineRequest, LowerEdge, MapOptions, MapPreset, MemoryPoints, PerRecord,
@@ -472,6 +473,8 @@ pub(crate) struct SystemArguments {
     crs: Option<String>,
     to_crs: Option<String>,
     force_degrees: bool,
+    require_grids: bool,
+    epoch: Option<f64>,
 }
 
 impl SystemArguments {
@@ -485,6 +488,10 @@ impl SystemArguments {
             assign: crs(self.crs.as_deref())?,
             target: crs(self.to_crs.as_deref())?,
             degrees,
+            transform: TransformOptions {
+                require_grids: self.require_grids,
+                epoch: self.epoch,
+            },
         })
     }
 }

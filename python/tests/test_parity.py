@@ -58,7 +58,7 @@ OF_RESULTS = {
 }
 
 #: Names of positional arguments.
-POSITIONAL = {"inputs": {"points", "inputs", "a", "surfaces"}, "input": {"path"}, "files": {"path"}}
+POSITIONAL = {"inputs": {"points", "inputs", "a", "surfaces"}, "input": {"path"}, "files": {"path"}, "from": {"from_crs"}, "to": {"to_crs"}}
 
 
 def parameters(function):
@@ -114,6 +114,8 @@ def test_parameters_are_options(verb):
         known |= {"a", "b"}
     if verb == "profile":
         known |= {"surfaces"}
+    if verb == "crs":
+        known |= {"from_crs", "to_crs"}
     assert set(parameters(getattr(breakline, verb))) <= known
 
 

@@ -23,6 +23,7 @@ use self::report::console::{Console, Verbosity};
 use self::report::{names, summary};
 pub use self::tables::{RunOptions, RunTables};
 use crate::error::{Kind, Result, Term};
+use crate::run::proj::TransformOptions;
 use crate::run::{Context, Facts};
 
 /// Runs the program with the given arguments and returns how it ended. The first argument is the
@@ -59,6 +60,7 @@ pub fn run(args: impl IntoIterator<Item = OsString>) -> Exit {
         Ok(exit) => {
             match cli.verb {
                 Verb::Info(_)
+                | Verb::Crs(_)
                 | Verb::Demo(_)
                 | Verb::Describe(_)
                 | Verb::Completions(_)
@@ -115,6 +117,21 @@ pub fn facts_as_json(path: &Path, facts: &Facts) -> String {
     verbs::info::as_json(path, facts).to_string()
 }
 
+/// Returns what a coordinate system is, or the operations from it to another, as the JSON object
+/// that `crs --json` prints.
+///
+/// # Errors
+/// Those of `run::proj::operations`, and if a text is not a system.
+pub fn systems_as_json(
+    from: &str,
+    to: Option<&str>,
+    at: Option<&[f64]>,
+    options: &TransformOptions,
+    context: &Context,
+) -> Result<String> {
+    verbs::crs::as_json(from, to, at, options, context).map(|found| found.to_string())
+}
+
 fn dispatch(verb: &Verb, how: &ConsoleArgs, console: &Console) -> Result<Exit> {
     match verb {
         Verb::Info(args) => verbs::info::run(args, console),
@@ -139,6 +156,7 @@ fn dispatch(verb: &Verb, how: &ConsoleArgs, console: &Console) -> Result<Exit> {
         Verb::Drape(args) => verbs::drape::run(args, console),
         Verb::Sample(args) => verbs::sample::run(args, console),
         Verb::Accuracy(args) => verbs::accuracy::run(args, console),
+        Verb::Crs(args) => verbs::crs::run(args, console),
         Verb::Job(args) => verbs::job::run(args, console),
         Verb::Demo(args) => verbs::demo::run(args, how, console, &|words| run(words)),
         Verb::Run(args) => verbs::run::run(args, console),

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | code | `25832`, `EPSG:25832`, `OGC:CRS84` |
 //! | codes of both parts | `EPSG:25832+7837` |
+//! | with heights above the ellipsoid | `EPSG:25832+ellipsoid` |
 //! | URN; the version may be missing | `urn:ogc:def:crs:EPSG:9.8:25832`, `urn:ogc:def:crs:OGC:1.3:CRS84` |
 //! | URN of a compound system | `urn:ogc:def:crs,crs:EPSG::25832,crs:EPSG::7837` |
 //! | http | `http://www.opengis.net/def/crs/EPSG/0/25832` |
@@ -18,6 +19,9 @@ use super::{Crs, registry};
 use crate::error::{Error, Result};
 
 const CURE: &str = "write EPSG:25832, EPSG:25832+7837 (with heights), or WKT";
+
+/// What stands for a vertical code where heights are above the ellipsoid.
+const ELLIPSOID: &str = "ellipsoid";
 
 /// The codes of OGC for systems with longitude before latitude, each with the code in EPSG of the
 /// system that has the same datum.
@@ -99,6 +103,9 @@ fn horizontal(object: &Object, text: &str) -> Result<Crs> {
 fn with_heights(mut crs: Crs, object: &Object, text: &str) -> Result<Crs> {
     if crs.vertical_unit.is_some() {
         return Err(Error::usage(format!("\"{text}\": {crs} has heights of its own")).cure(CURE));
+    }
+    if object.code == ELLIPSOID {
+        return Ok(crs.with_ellipsoidal_heights());
     }
     let code = match (object.authority.as_str(), object.code.as_str()) {
         ("ogc", "crs88") => 5703,

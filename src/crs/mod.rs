@@ -10,6 +10,7 @@
 mod definition;
 mod esri;
 mod geokeys;
+mod heights;
 mod identifier;
 mod names;
 mod projection;
@@ -21,6 +22,7 @@ mod wkt_tree;
 mod wkt_write;
 
 pub use geokeys::{GeoKeys, RasterType};
+pub use heights::Heights;
 pub use system::{Crs, CrsKind};
 pub use unit::Unit;
 
@@ -83,7 +85,8 @@ impl Crs {
     }
 
     /// Parses the input of a user, or an identifier in a file: `EPSG:25832`, `EPSG:25832+7837`,
-    /// `25832`, `OGC:CRS84`, a URN of OGC 07-092 or its http form, or WKT.
+    /// `EPSG:25832+ellipsoid` (heights above the ellipsoid, in meters), `25832`, `OGC:CRS84`, a URN
+    /// of OGC 07-092 or its http form, or WKT.
     ///
     /// | identifier | example |
     /// |---|---|
@@ -164,7 +167,7 @@ impl Crs {
         let vertical = match (self.vertical_epsg, other.vertical_epsg) {
             (Some(a), Some(b)) => a == b,
             _ => match (&self.vertical_unit, &other.vertical_unit) {
-                (Some(a), Some(b)) => a.is_same(b),
+                (Some(a), Some(b)) => a.is_same(b) && !self.differs_by_ellipsoid(other),
                 _ => true,
             },
         };
@@ -180,6 +183,16 @@ impl Crs {
             }
         };
         vertical && self.kind == other.kind && (by_code || by_definition())
+    }
+
+    /// Returns true if the heights of one are above its ellipsoid, and those of the other are above
+    /// a vertical datum.
+    fn differs_by_ellipsoid(&self, other: &Crs) -> bool {
+        let is_datum = |heights| matches!(heights, Heights::Vertical(_) | Heights::Named);
+        match (self.heights(), other.heights()) {
+            (Heights::Ellipsoid, heights) | (heights, Heights::Ellipsoid) => is_datum(heights),
+            _ => false,
+        }
     }
 
     /// Returns the system, or `None` for the names that GDAL writes for a missing one, such as

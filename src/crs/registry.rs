@@ -68,6 +68,11 @@ pub(super) fn find(code: u32) -> Option<System> {
     Some(system)
 }
 
+/// Returns true if the authority states latitude or northing first.
+pub(super) fn is_northing_first(code: u32) -> Option<bool> {
+    Some(proj_core::lookup_authority_axis_order(code)? == AxisOrder::NorthEast)
+}
+
 /// The vertical system with a code.
 pub(super) fn find_vertical(code: u32) -> Option<Vertical> {
     proj_core::lookup_vertical_epsg(code).map(|found| vertical(&found))

@@ -14,7 +14,8 @@ const GEOCENTRIC: &[&str] = &["GEOCCS"];
 const LOCAL: &[&str] = &["LOCAL_CS", "ENGCRS", "ENGINEERINGCRS", "FITTED_CS"];
 const COMPOUND: &[&str] = &["COMPD_CS", "COMPOUNDCRS"];
 const BOUND: &[&str] = &["BOUNDCRS"];
-const VERTICAL: &[&str] = &["VERT_CS", "VERTCS", "VERTCRS", "VERTICALCRS"];
+const METADATA: &str = "COORDINATEMETADATA";
+pub(super) const VERTICAL: &[&str] = &["VERT_CS", "VERTCS", "VERTCRS", "VERTICALCRS"];
 const BASE: &[&str] = &[
     "GEOGCS",
     "BASEGEOGCRS",
@@ -54,6 +55,12 @@ fn is(node: &Node, keywords: &[&str]) -> bool {
 }
 
 fn system(node: &Node) -> Result<(Crs, Option<Definition>)> {
+    if node.keyword == METADATA {
+        let stated = node.nodes().find(|child| child.keyword != "EPOCH");
+        return system(
+            stated.ok_or_else(|| Error::format(format!("{METADATA} without a system")))?,
+        );
+    }
     if is(node, BOUND) {
         let source = node
             .find(&["SOURCECRS"])

@@ -68,6 +68,15 @@ pub(super) fn write_compound(
     )
 }
 
+/// Horizontal WKT with heights above its ellipsoid in meters, as GDAL writes it.
+pub(super) fn write_above_ellipsoid(name: &str, horizontal: &str) -> String {
+    format!(
+        "COMPD_CS[{},{horizontal},VERT_CS[\"Ellipsoid (metre)\",VERT_DATUM[\"Ellipsoid\",2002],\
+         UNIT[\"metre\",1,AUTHORITY[\"EPSG\",\"9001\"]],AXIS[\"Up\",UP]]]",
+        quoted(name)
+    )
+}
+
 struct Writer {
     dialect: Dialect,
 }

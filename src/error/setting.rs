@@ -53,6 +53,7 @@ settings! {
     DrapedLines = "draped-lines",
     DropWithheld = "drop-withheld",
     Duplicates = "duplicates",
+    Epoch = "epoch",
     Exaggeration = "exaggeration",
     Extent = "extent",
     Flat = "flat",
@@ -93,6 +94,7 @@ settings! {
     Preset = "preset",
     Ramp = "ramp",
     RegionAreas = "region-areas",
+    RequireGrids = "require-grids",
     Resolution = "resolution",
     Resume = "resume",
     Return = "return",
@@ -241,11 +243,18 @@ pub enum Feature {
     Gpkg,
     /// Reprojection with PROJ.
     Proj,
+    /// PROJ's grids in GeoTIFF.
+    ProjTiff,
 }
 
 impl Feature {
     /// All features that texts mention.
-    pub const ALL: &'static [Feature] = &[Feature::Gdal, Feature::Gpkg, Feature::Proj];
+    pub const ALL: &'static [Feature] = &[
+        Feature::Gdal,
+        Feature::Gpkg,
+        Feature::Proj,
+        Feature::ProjTiff,
+    ];
 
     /// Returns the name of the feature in the manifest.
     pub fn name(self) -> &'static str {
@@ -253,6 +262,7 @@ impl Feature {
             Feature::Gdal => "gdal",
             Feature::Gpkg => "gpkg",
             Feature::Proj => "proj",
+            Feature::ProjTiff => "proj-tiff",
         }
     }
 }

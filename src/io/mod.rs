@@ -55,6 +55,7 @@ pub use bytes::output::{
     probe, remove_abandoned, require_absent,
 };
 pub use bytes::watch::Watch;
+pub(crate) use codec::prj;
 pub use codec::{
     ascii_grid, gdal, geojson, geotiff, gpkg, las, png, ramp, shapefile, tetgen, text, triangle,
 };

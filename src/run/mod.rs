@@ -125,7 +125,7 @@ pub use products::drape::{DrapeOptions, DrapeProduct, drape};
 pub use products::edge_limit::EdgeLimit;
 pub use products::elevation::{Heights, elevations};
 pub use products::facts::{
-    Facts, LayerFacts, MeshFacts, PlaneFacts, PointFacts, RasterFacts, facts,
+    Facts, LayerFacts, MeshFacts, PlaneFacts, PointFacts, RasterFacts, crs_of_file, facts,
 };
 pub use products::frame::FrameOptions;
 pub use products::map_options::{MapOptions, MapPreset, Smoothing};

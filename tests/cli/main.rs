@@ -7,6 +7,7 @@ mod accuracy;
 mod columns;
 mod comparisons;
 mod crossings;
+mod crs;
 mod demo;
 mod drape;
 mod habits;

@@ -30,6 +30,7 @@ fn help_goes_to_stdout_and_tells_each_verb_with_an_example() {
         "sample",
         "accuracy",
         "check",
+        "crs",
         "demo",
     ] {
         assert!(run.stdout.contains(&format!("\n  {verb} ")), "{verb}");

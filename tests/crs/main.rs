@@ -1,7 +1,11 @@
 //! Coordinate systems against real files, and against GDAL's reading of our text and keys (if its
 //! tools are installed).
 
+#[cfg(all(feature = "proj", feature = "cli"))]
+mod heights;
 mod keys;
+#[cfg(feature = "proj")]
+mod published;
 mod real;
 mod reprojection;
 mod texts;

@@ -4,7 +4,7 @@
 #[test]
 fn without_proj_the_error_says_how_to_get_it() {
     let crs = |code| breakline::crs::Crs::from_epsg(code).unwrap();
-    let error = breakline::run::proj::transform(&crs(4326), &crs(32633))
+    let error = breakline::run::proj::transform(&crs(4326), &crs(32633), &Default::default())
         .err()
         .unwrap();
     assert!(
@@ -25,10 +25,16 @@ fn without_proj_the_error_says_how_to_get_it() {
 #[cfg(feature = "proj")]
 mod with_proj {
     use breakline::crs::Crs;
-    use breakline::run::proj::transform;
+    use breakline::crs::Transform;
+    use breakline::error::Result;
+    use breakline::run::proj::{self, TransformOptions};
 
     fn crs(text: &str) -> Crs {
         Crs::from_user(text).unwrap()
+    }
+
+    fn transform(from: &Crs, to: &Crs) -> Result<Box<dyn Transform>> {
+        proj::transform(from, to, &TransformOptions::default())
     }
 
     fn check(from: &str, to: &str, point: [f64; 3], wanted: [f64; 3], within: f64) -> Vec<String> {

@@ -25,6 +25,7 @@ heights at points   :func:`sample`
 accuracy            :func:`accuracy`
 flaws               :meth:`Tin.check`, :func:`check`
 facts about a file  :func:`info`
+coordinate systems  :func:`crs`
 Triangle's files    :func:`triangulate`
 large data          ``output=`` of a verb, :class:`Job`
 ==================  ==================================================
@@ -66,6 +67,7 @@ from ._verbs import (
     Volume,
     check,
     contour,
+    crs,
     dem,
     describe,
     hillshade,
@@ -118,6 +120,7 @@ __all__ = [
     "color_relief",
     "compare",
     "contour",
+    "crs",
     "curvature",
     "dem",
     "describe",

@@ -40,11 +40,14 @@ def _selection(
     }
 
 
-def _systems(crs: Any, to_crs: Any, force_degrees: bool = False) -> "dict[str, Any]":
+def _systems(options: "dict[str, Any]") -> "dict[str, Any]":
+    """Return the coordinate systems among some options as the library takes them."""
     return {
-        "crs": _inputs.crs_text(crs),
-        "to_crs": _inputs.crs_text(to_crs),
-        "force_degrees": bool(force_degrees),
+        "crs": _inputs.crs_text(options.get("crs")),
+        "to_crs": _inputs.crs_text(options.get("to_crs")),
+        "force_degrees": bool(options.get("force_degrees", False)),
+        "require_grids": bool(options.get("require_grids", False)),
+        "epoch": _inputs.optional_number(options.get("epoch"), "epoch"),
     }
 
 
@@ -61,6 +64,8 @@ def read_points(
     seed: Any = None,
     crs: Any = None,
     to_crs: Any = None,
+    require_grids: bool = False,
+    epoch: Optional[float] = None,
     columns: Any = None,
     partial: bool = False,
     copc_resolution: Optional[float] = None,
@@ -96,6 +101,10 @@ def read_points(
         Coordinate system to assign, whatever the files state.
     to_crs : str, int or pyproj.CRS, optional
         Coordinate system to reproject to; needs a build with PROJ.
+    require_grids : bool
+        Stop if a grid is missing that the best operation needs, such as one of geoid heights; a warning by default.
+    epoch : float, optional
+        Epoch of the coordinates in years, such as 2021.5, for operations that depend on it; by default that of the input.
     columns : str or (x, y, z), optional
         Columns of text files: ``"PNEZD"``, ``"XYZ"``, or numbers from 1.
     partial : bool
@@ -133,9 +142,10 @@ def read_points(
     {2}
     """
     selection = _selection(classes, returns, drop_withheld, bounds, boundary, thin, thin_keep, seed)
+    systems = _systems({"crs": crs, "to_crs": to_crs, "require_grids": require_grids, "epoch": epoch})
     with call(threads, progress) as request:
         found = _breakline.read_points(
-            _inputs.files(paths, "paths"), _read(columns, partial, copc_resolution), _systems(crs, to_crs), selection, request
+            _inputs.files(paths, "paths"), _read(columns, partial, copc_resolution), systems, selection, request
         )
     return Points(**found)
 
@@ -155,6 +165,8 @@ def points(
     round: bool = False,
     crs: Any = None,
     to_crs: Any = None,
+    require_grids: bool = False,
+    epoch: Optional[float] = None,
     columns: Any = None,
     partial: bool = False,
     copc_resolution: Optional[float] = None,
@@ -176,8 +188,8 @@ def points(
         Round coordinates to the nearest step of the first file's scale, if scales and offsets do not fit together.
     overwrite : bool
         Replace a file that exists.
-    classes, returns, drop_withheld, bounds, boundary, thin, thin_keep, seed, crs, to_crs, columns, partial,
-    copc_resolution
+    classes, returns, drop_withheld, bounds, boundary, thin, thin_keep, seed, crs, to_crs, require_grids,
+    epoch, columns, partial, copc_resolution
         As for :func:`read_points`.
     threads, progress
         As for :func:`read_points`.
@@ -200,11 +212,12 @@ def points(
     >>> counts = breakline.points("valley.laz", "ground.laz", classes="ground", overwrite=True)
     """
     selection = _selection(classes, returns, drop_withheld, bounds, boundary, thin, thin_keep, seed, round)
+    systems = _systems({"crs": crs, "to_crs": to_crs, "require_grids": require_grids, "epoch": epoch})
     with call(threads, progress) as request:
         return _breakline.write_points(
             _inputs.files(inputs, "inputs"),
             _read(columns, partial, copc_resolution),
-            _systems(crs, to_crs),
+            systems,
             selection,
             _inputs.path(output, "output"),
             bool(overwrite),

@@ -27,6 +27,8 @@ DEFAULTS: "dict[str, Any]" = {
     "classes": None,
     "returns": None,
     "to_crs": None,
+    "require_grids": False,
+    "epoch": None,
     "duplicates": "lowest",
     "on_crossing": "split",
     "crossing_z": "lowest",
@@ -65,6 +67,8 @@ class Building(TypedDict, total=False):
     returns: Any
     crs: Any
     to_crs: Any
+    require_grids: bool
+    epoch: Optional[float]
     force_degrees: bool
     duplicates: Height
     on_crossing: OnCrossing

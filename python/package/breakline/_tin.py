@@ -528,6 +528,8 @@ def tin(
     returns: Any = None,
     crs: Any = None,
     to_crs: Any = None,
+    require_grids: bool = False,
+    epoch: Optional[float] = None,
     force_degrees: bool = False,
     duplicates: Height = "lowest",
     on_crossing: OnCrossing = "split",
@@ -598,6 +600,11 @@ def tin(
         Coordinate system to assign, whatever the input states.
     to_crs : str, int or pyproj.CRS, optional
         Coordinate system to reproject to; needs a build with PROJ.
+    require_grids : bool
+        Stop if a grid is missing that the best operation needs, such as one of geoid heights; a warning by default.
+    epoch : float, optional
+        Epoch of the coordinates in years, such as 2021.5, for operations that depend on it; by default that of the
+        input.
     force_degrees : bool
         Go on although coordinates are in degrees.
     duplicates : str
@@ -703,7 +710,7 @@ def built(
 ) -> Tin:
     """Open or build the TIN of the parameters of `tin`, such that heights by a method are those of all points."""
     found = _inputs.points(options["points"])
-    systems = _systems(options["crs"], options["to_crs"], options["force_degrees"])
+    systems = _systems(options)
     is_file = len(found) == 1 and isinstance(found[0], str)
     with call(options["threads"], options["progress"]) as request:
         opened = _breakline.Surface.open(found[0], systems, request) if is_file else None

@@ -52,7 +52,7 @@ def surface_of(
         _refuse(surface, "this")
         return points._surface if isinstance(points, Tin) else points._surface()
     if _inputs.is_path(points) and os.path.isfile(points):
-        systems = _systems(surface.get("crs"), surface.get("to_crs"), surface.get("force_degrees", False))
+        systems = _systems(surface)
         with call(threads, progress) as request:
             opened = _breakline.Surface.open(os.fspath(points), systems, request)
         if opened is not None and opened.kind == "raster":
@@ -652,6 +652,63 @@ def check(
         return points.check(threads=threads, progress=progress)
     built: Tin = tin(points, threads=threads, progress=progress, **surface)
     return built.check(threads=threads, progress=progress)
+
+
+def crs(
+    from_crs: Any,
+    to_crs: Any = None,
+    *,
+    at: Any = None,
+    require_grids: bool = False,
+    epoch: Optional[float] = None,
+    threads: Optional[int] = None,
+    progress: Progress = None,
+) -> "dict[str, Any]":
+    """Return what a coordinate system is, or how one is transformed to another.
+
+    Parameters
+    ----------
+    from_crs : str, int or pyproj.CRS
+        ``"EPSG:25832"``, ``"EPSG:25832+7837"`` (with heights), ``"EPSG:25832+ellipsoid"``, WKT, or a file that states a
+        system.
+    to_crs : as from_crs, optional
+        The system that coordinates are transformed to; needs a build with PROJ.
+    at : (x, y) or (x, y, z), optional
+        A point to transform, easting or longitude first.
+    require_grids, epoch
+        As for :func:`tin`.
+    threads, progress
+        As for :func:`tin`.
+
+    Returns
+    -------
+    dict
+        As ``breakline crs --json`` prints it: for two systems with all operations, the best first.
+
+    Raises
+    ------
+    UsageError
+        If a system is not known.
+    UnsupportedError
+        If there is no operation, or the library was built without PROJ.
+
+    Examples
+    --------
+    >>> import breakline
+    >>> breakline.crs("EPSG:2264")["unit"]["name"]
+    'US survey foot'
+    """
+    point = None if at is None else [_inputs.number(value, "at") for value in at]
+    if point is not None and len(point) not in (2, 3):
+        raise usage("at is not a point", at, "pass (x, y) or (x, y, z)")
+    options = (bool(require_grids), _inputs.optional_number(epoch, "epoch"))
+    from_text = _inputs.crs_text(os.fspath(from_crs) if isinstance(from_crs, os.PathLike) else from_crs)
+    to_text = _inputs.crs_text(os.fspath(to_crs) if isinstance(to_crs, os.PathLike) else to_crs)
+    if from_text is None:
+        raise usage("from_crs is not a coordinate system", from_crs, "pass 'EPSG:25832', a code, WKT or a file")
+    with call(threads, progress) as request:
+        found: "dict[str, Any]" = json.loads(_breakline.crs(from_text, to_text, point, options, request))
+    return found
 
 
 def info(

@@ -393,7 +393,7 @@ def _request(verb: str, inputs: "list[Any]", options: "dict[str, Any]", how: "di
         raise usage("flat_points is for Tin.replaced_points, but a file is written", True, cure)
     if how["resume"] and how["update"]:
         raise usage("resume and update are given", None, "use one of them")
-    systems = _systems(options.pop("crs", None), options.pop("to_crs", None), options.pop("force_degrees", False))
+    systems = _systems(options)
     read = _read(options.pop("columns", None), options.pop("partial", False))
     labels = own.get("labels_output")
     kind = "points"

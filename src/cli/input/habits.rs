@@ -166,6 +166,7 @@ const VERBS: &[(&str, &str)] = &[
     ("gdal_contour", "contour"),
     ("lasinfo", "info"),
     ("gdalinfo", "info"),
+    ("gdalsrsinfo", "crs"),
     ("TRI", "tri"),
     ("TPI", "tpi"),
     ("ogrinfo", "info"),

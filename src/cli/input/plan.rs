@@ -174,6 +174,7 @@ pub(crate) fn systems(args: &SystemArgs) -> Result<SystemOptions> {
     Ok(SystemOptions {
         assign: system("--a-srs", args.a_srs.as_deref())?,
         target: system("--t-srs", args.t_srs.as_deref())?,
+        transform: (&args.transform).into(),
         ..SystemOptions::default()
     })
 }

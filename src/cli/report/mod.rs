@@ -13,5 +13,6 @@ pub(super) mod run_plan;
 mod statistics;
 pub(super) mod stdout;
 pub(super) mod summary;
+pub(super) mod systems;
 pub(super) mod volumes;
 pub(super) mod written;

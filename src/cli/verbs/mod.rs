@@ -5,6 +5,7 @@ mod asked;
 pub(super) mod check;
 pub(super) mod compare;
 mod contour;
+pub(super) mod crs;
 mod dem;
 pub(super) mod demo;
 pub(super) mod describe;

@@ -24,14 +24,22 @@ pub(crate) enum Prj {
 /// # Errors
 /// If it exists and cannot be read.
 pub(crate) fn read_beside(path: &Path) -> Result<Prj> {
-    let Some(path) = sibling(path, "prj") else {
-        return Ok(Prj::Stated(None));
-    };
+    match sibling(path, "prj") {
+        Some(path) => read(&path),
+        None => Ok(Prj::Stated(None)),
+    }
+}
+
+/// Reads a file of WKT.
+///
+/// # Errors
+/// If it cannot be read.
+pub(crate) fn read(path: &Path) -> Result<Prj> {
     let mut bytes = Vec::new();
-    File::open(&path)?
+    File::open(path)?
         .take(MAX_PRJ)
         .read_to_end(&mut bytes)
-        .map_err(|e| Error::from(e).in_file(&path))?;
+        .map_err(|e| Error::from(e).in_file(path))?;
     let text = String::from_utf8_lossy(&bytes);
     let text = text.trim_start_matches('\u{feff}').trim();
     if text.is_empty() {

@@ -24,7 +24,7 @@ use crate::run::request::input::{Input, MemoryPoints};
 use crate::run::sources::open;
 use crate::run::sources::point_files::{BadFiles, PointFiles};
 use crate::run::sources::systems::{self, Stated, SystemOptions, Systems};
-use crate::run::sources::transforms::{FileTransform, Transforms};
+use crate::run::sources::transforms::{FileTransform, TargetSystem, Transforms};
 use crate::run::verbs::{Keeps, Verb};
 use crate::terrain::Canvas;
 use crate::terrain::Classes;
@@ -98,7 +98,11 @@ impl<'a> Inputs<'a> {
         let of_points = stated.len();
         stated.extend(layers.stated());
         let Systems { mut from, crs } = systems::reconcile_some(&stated, systems, journal)?;
-        let transforms = Transforms::new(&from, crs.as_ref(), journal)?;
+        let to = TargetSystem {
+            crs: crs.as_ref(),
+            options: &systems.transform,
+        };
+        let transforms = Transforms::new(&from, to, journal)?;
         let layers_from = from.split_off(of_points);
         let Found {
             classes,
@@ -106,7 +110,7 @@ impl<'a> Inputs<'a> {
             skipped,
         } = opened.looked_at(request, systems, &transforms, known_files, &journal.context)?;
         let extent = extent_of(&files);
-        let of_layers = (layers_from.as_slice(), crs.as_ref());
+        let of_layers = (layers_from.as_slice(), to);
         let known = Known::of_layers(&layers, request, of_layers, &extent, journal)?;
         if files.is_empty() {
             return Err(
@@ -183,6 +187,7 @@ impl<'a> Inputs<'a> {
             layout: tiling.layout,
             crs: self.crs,
             layers_from: self.layers_from,
+            transform: self.systems.transform,
             classes: self.classes,
             max_edge: self.max_edge,
             frame: tiling.frame,
@@ -220,7 +225,11 @@ impl<'a> Inputs<'a> {
         let average = most as f64 * AVERAGE;
         let spreads = match options.look {
             Look::Points => {
-                let used = (classes.as_slice(), self.crs.as_ref());
+                let to = TargetSystem {
+                    crs: self.crs.as_ref(),
+                    options: &self.systems.transform,
+                };
+                let used = (classes.as_slice(), to);
                 sampled::spreads(files, request, used, average, context)?
             }
             Look::Headers => spreads,

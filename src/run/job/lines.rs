@@ -21,7 +21,7 @@ use crate::run::lines::inputs::{Added, LineLayers};
 use crate::run::lines::notes::{self as line_notes, LevelRings, OtherHeights};
 use crate::run::products::tin::{TinRequest, builder_of, default_tolerance};
 use crate::run::sources::extents::LineExtents;
-use crate::run::sources::transforms::Transforms;
+use crate::run::sources::transforms::{TargetSystem, Transforms};
 use crate::terrain::tiles::{self, SubConstraint, TileClip, TileLayout};
 use crate::terrain::{NearLines, Tin, TinBuilder};
 use crate::triangulation::num::unsigned_zero;
@@ -61,7 +61,7 @@ impl Known {
     /// If a layer cannot be read or reprojected, or is not what its option takes.
     pub(super) fn read(
         request: &TinRequest,
-        systems: (&[Option<Crs>], Option<&Crs>),
+        systems: (&[Option<Crs>], TargetSystem),
         extent: &Bounds,
         journal: &Journal,
     ) -> Result<Self> {
@@ -73,12 +73,13 @@ impl Known {
     pub(super) fn of_layers(
         layers: &LineLayers,
         request: &TinRequest,
-        (from, crs): (&[Option<Crs>], Option<&Crs>),
+        (from, to): (&[Option<Crs>], TargetSystem),
         extent: &Bounds,
         journal: &Journal,
     ) -> Result<Self> {
         // The plan has said which systems are reprojected.
-        let transforms = Transforms::new(from, crs, &Journal::new(&Context::default()))?;
+        let transforms = Transforms::new(from, to, &Journal::new(&Context::default()))?;
+        let crs = to.crs;
         let units = Units::of(crs);
         let mut builder = builder_of(request, &units, crs.cloned());
         let mut added = layers.add_to(&mut builder, &transforms.by_file, &transforms, &units)?;

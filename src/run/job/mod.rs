@@ -479,10 +479,7 @@ impl Job {
             return Ok(known);
         }
         // What there is to say about the layers was said with the plan.
-        let Plan {
-            layers_from, crs, ..
-        } = &self.plan;
-        let systems = (layers_from.as_slice(), crs.as_ref());
+        let systems = (self.plan.layers_from.as_slice(), self.plan.target_system());
         let extent = self.plan.extent();
         let known = Known::read(
             &self.request,

@@ -15,6 +15,8 @@ use crate::run::products::tin::TinRequest;
 use crate::run::request::input::Input;
 use crate::run::request::serialized;
 use crate::run::sources::point_files::GROUND;
+use crate::run::sources::proj::TransformOptions;
+use crate::run::sources::transforms::TargetSystem;
 use crate::run::verbs::Verb;
 use crate::terrain::tiles::{Spread, TileLayout, Work};
 use crate::terrain::{Classes, SelectionReport};
@@ -64,6 +66,9 @@ pub(super) struct Plan {
     pub(super) crs: Option<Crs>,
     /// The systems that the layers of lines are reprojected from, if they are.
     pub(super) layers_from: Vec<Option<Crs>>,
+    /// How coordinates are reprojected.
+    #[serde(default)]
+    pub(super) transform: TransformOptions,
     /// The classes that are used.
     pub(super) classes: Vec<u8>,
     /// The longest edge at the rim.
@@ -108,6 +113,14 @@ pub(super) fn require_readable_again(request: &TinRequest) -> Result<()> {
 }
 
 impl Plan {
+    /// Returns where coordinates are reprojected to, and how.
+    pub(super) fn target_system(&self) -> TargetSystem<'_> {
+        TargetSystem {
+            crs: self.crs.as_ref(),
+            options: &self.transform,
+        }
+    }
+
     /// Returns true if some files are divided among tiles first: they are not tiles themselves, or
     /// there are lines.
     pub(super) fn divides(&self) -> bool {
@@ -245,7 +258,7 @@ impl Plan {
             return Ok(());
         }
         let context = Context::default();
-        let transforms = file.transforms(self.crs.as_ref(), &context)?;
+        let transforms = file.transforms(self.target_system(), &context)?;
         let found = looked_at(file.input, request, transforms.of_file(0), &context)?;
         match found {
             Some(found)

@@ -18,7 +18,7 @@ use crate::run::request::input::{Input, MemoryPoints};
 use crate::run::sources::checksum::checksum;
 use crate::run::sources::file_extent::{FileExtent, with_rounding};
 use crate::run::sources::open;
-use crate::run::sources::transforms::{FileTransform, Transforms};
+use crate::run::sources::transforms::{FileTransform, TargetSystem, Transforms};
 use crate::terrain::tiles::Spread;
 
 /// The state of a file and of those that are read along with it, which differs once one of them has
@@ -65,7 +65,7 @@ pub(super) struct PlannedFile {
 
 impl PlannedFile {
     /// Returns the transforms to the system of the result of one file, which is this one.
-    pub(super) fn transforms(&self, to: Option<&Crs>, context: &Context) -> Result<Transforms> {
+    pub(super) fn transforms(&self, to: TargetSystem, context: &Context) -> Result<Transforms> {
         let journal = Journal::new(&context.quiet());
         Transforms::new(std::slice::from_ref(&self.from), to, &journal)
     }

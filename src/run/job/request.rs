@@ -12,6 +12,7 @@ use crate::run::products::tin::TinRequest;
 use crate::run::request::lines::{FlatOptions, LineRequest, WallOptions};
 use crate::run::request::serialized::in_plan;
 use crate::run::sources::checksum::checksum;
+use crate::run::sources::proj::TransformOptions;
 use crate::run::sources::systems::SystemOptions;
 use crate::run::verbs::targets::Targets;
 use crate::run::verbs::{Verb, WriteRequest};
@@ -94,10 +95,16 @@ pub(super) fn options_of(
         assign,
         target,
         degrees,
+        transform: TransformOptions {
+            require_grids,
+            epoch,
+        },
     } = systems;
     options.add(&[Setting::Crs], assign);
     options.add(&[Setting::TargetCrs], target);
     options.add(&[Setting::ForceDegrees], degrees);
+    options.add(&[Setting::RequireGrids], require_grids);
+    options.add(&[Setting::Epoch], epoch);
     verb.list(&mut |setting, value| options.add(&[setting], value));
     options.add(&[Setting::Tiles], &tiles.division);
     options.add(&[Setting::Memory], &tiles.memory);

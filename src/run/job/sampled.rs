@@ -1,12 +1,12 @@
 //! Where the points of large files are, for tiles that suit them.
 
 use super::planned_file::PlannedFile;
-use crate::crs::Crs;
 use crate::data::PointBatch;
 use crate::error::{Kind, Result};
 use crate::run::context::{Context, Size, Stage};
 use crate::run::products::tin::TinRequest;
 use crate::run::sources::open;
+use crate::run::sources::transforms::TargetSystem;
 use crate::terrain::tiles::Spread;
 use crate::terrain::{Classes, Selection};
 
@@ -27,14 +27,14 @@ const POSITIONS_A_TILE: f64 = 100.0;
 pub(super) fn spreads(
     files: &[PlannedFile],
     request: &TinRequest,
-    (classes, crs): (&[u8], Option<&Crs>),
+    (classes, to): (&[u8], TargetSystem),
     average: f64,
     context: &Context,
 ) -> Result<Vec<Spread>> {
     let mut all = Vec::new();
     for file in files {
         let sampled = if file.count as f64 >= LARGE * average {
-            sampled(file, request, (classes, crs), average, context)
+            sampled(file, request, (classes, to), average, context)
         } else {
             Ok(Vec::new())
         };
@@ -54,7 +54,7 @@ pub(super) fn spreads(
 fn sampled(
     file: &PlannedFile,
     request: &TinRequest,
-    (classes, crs): (&[u8], Option<&Crs>),
+    (classes, to): (&[u8], TargetSystem),
     average: f64,
     context: &Context,
 ) -> Result<Vec<Spread>> {
@@ -64,7 +64,7 @@ fn sampled(
     }
     let work = context.start(Stage::ReadingPoints, Size::Unknown)?;
     let extent = file.spread();
-    let transforms = file.transforms(crs, context)?;
+    let transforms = file.transforms(to, context)?;
     let mut selection =
         Selection::new(Classes::Only(classes.to_vec()), None).with_returns(request.returns.clone());
     let mut batch = PointBatch::default();

@@ -214,7 +214,7 @@ impl Job {
             .require_system(number, source.info().crs.as_ref(), &self.folder)?;
         let mut selection = Selection::new(Classes::Only(self.plan.classes.clone()), None)
             .with_returns(self.request.returns.clone());
-        let transforms = file.transforms(self.plan.crs.as_ref(), &journal.context)?;
+        let transforms = file.transforms(self.plan.target_system(), &journal.context)?;
         let mut batch = PointBatch::default();
         let mut extent = Bounds::default();
         loop {

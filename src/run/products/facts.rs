@@ -8,12 +8,14 @@ use crate::data::{
     BlockSource, Bounds, Frame, Grid, LinkFlaw, PointBatch, PointFlags, PointInfo, Shape,
     ShapeKind, Surface, SurfaceFacts,
 };
-use crate::error::{Result, Wording};
+use crate::error::{Error, Result, Wording};
 use crate::io::mesh::Solid;
 use crate::io::png::Picture;
+use crate::io::prj::{self, Prj};
 use crate::io::{OnDamage, points};
 use crate::run::context::{Context, Journal, Size, Stage};
 use crate::run::sources::open::{self, Content, Raster};
+use crate::run::sources::systems::quoted;
 use crate::run::sources::tin_parts::TinParts;
 use crate::terrain::CompactTin;
 
@@ -171,6 +173,55 @@ pub fn facts(path: &Path, read: points::Options, context: &Context) -> Result<Fa
     };
     context.check()?;
     Ok(facts)
+}
+
+impl Facts {
+    /// Returns the coordinate system that the file states.
+    pub fn crs(&self) -> Option<&Crs> {
+        match self {
+            Facts::Points(facts) => facts.info.crs.as_ref(),
+            Facts::Layer(facts) => facts.crs.as_ref(),
+            Facts::Raster(facts) => facts.crs.as_ref(),
+            Facts::Mesh(facts) => facts.crs.as_ref(),
+            Facts::Solid(_) | Facts::Picture(_) | Facts::Plane(_) => None,
+        }
+    }
+}
+
+/// Returns the coordinate system of a file: of WKT (`.prj`, `.wkt`), or the one that a file of any
+/// other kind states. Of points only the header is read.
+///
+/// # Errors
+/// If the file cannot be read, or states no system that is understood.
+pub fn crs_of_file(path: &Path, context: &Context) -> Result<Crs> {
+    let is_wkt = path.extension().is_some_and(|extension| {
+        ["prj", "wkt"]
+            .iter()
+            .any(|known| extension.eq_ignore_ascii_case(known))
+    });
+    let none = |unread: Option<String>| {
+        let text = match unread {
+            Some(text) => format!(
+                "a coordinate system that is not understood: {}",
+                quoted(&text)
+            ),
+            None => "the file states no coordinate system".to_owned(),
+        };
+        Error::unsupported(text).in_file(path)
+    };
+    let (crs, unread) = if is_wkt {
+        match prj::read(path)? {
+            Prj::Stated(crs) => (crs, None),
+            Prj::Unread(_, error) => return Err(error.in_file(path)),
+        }
+    } else if let Content::Points = open::content(path) {
+        let source = open::points_of_file(path, points::Options::default(), context)?;
+        (source.info().crs.clone(), source.info().unread_crs.clone())
+    } else {
+        let facts = facts(path, points::Options::default(), context)?;
+        (facts.crs().cloned(), None)
+    };
+    crs.ok_or_else(|| none(unread))
 }
 
 /// The flags that are counted, in order.

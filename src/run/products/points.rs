@@ -22,7 +22,7 @@ use crate::run::sources::narrowed::{Share, narrow};
 use crate::run::sources::open;
 use crate::run::sources::point_files::{ASK_EVERY, FILES_KEPT_OPEN};
 use crate::run::sources::systems::{self, Stated, SystemOptions, Systems};
-use crate::run::sources::transforms::Transforms;
+use crate::run::sources::transforms::{TargetSystem, Transforms};
 use crate::terrain::{Inside, Thinning};
 
 /// The files to read and the points to write. By default all points are written.
@@ -392,7 +392,11 @@ impl Plan {
         let stated: Vec<Stated> = points.chain(lines).collect();
         let SystemOptions { assign, target, .. } = &request.systems;
         let Systems { from, crs } = systems::unify(&stated, &request.systems, journal)?;
-        let transforms = Transforms::new(&from, crs.as_ref(), journal)?;
+        let to = TargetSystem {
+            crs: crs.as_ref(),
+            options: &request.systems.transform,
+        };
+        let transforms = Transforms::new(&from, to, journal)?;
         Ok(Plan {
             crs,
             is_new: assign.is_some() || target.is_some(),

@@ -26,7 +26,7 @@ use crate::run::sources::file_extent::FileExtent;
 use crate::run::sources::open::{self, Content, content};
 use crate::run::sources::point_files::{FilesRead, LeftOutFiles, PointFiles};
 use crate::run::sources::systems::{self, SystemOptions, Systems};
-use crate::run::sources::transforms::Transforms;
+use crate::run::sources::transforms::{TargetSystem, Transforms};
 use crate::terrain::{
     Classes, CrossingRule, DuplicateRule, Method, ReadWindow, Selection, SelectionReport, Tin,
     TinBuilder, TinReport,
@@ -250,7 +250,11 @@ pub(crate) fn build(
     let mut stated = files.stated(&request.classes, journal)?;
     stated.extend(layers.stated());
     let Systems { from, crs } = systems::reconcile_some(&stated, options, journal)?;
-    let transforms = Transforms::new(&from, crs.as_ref(), journal)?;
+    let to = TargetSystem {
+        crs: crs.as_ref(),
+        options: &options.transform,
+    };
+    let transforms = Transforms::new(&from, to, journal)?;
     let (of_points, of_layers) = transforms.by_file.split_at(files.len());
 
     let units = Units::of(crs.as_ref());

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::proj::TransformOptions;
 use crate::crs::{Crs, CrsKind};
 use crate::data::{Layer, PointInfo};
 use crate::error::{Error, Result, Setting, Wording, wording};
@@ -20,6 +21,8 @@ pub struct SystemOptions {
     pub target: Option<Crs>,
     /// What to do with coordinates in degrees.
     pub degrees: Degrees,
+    /// How coordinates are reprojected.
+    pub transform: TransformOptions,
 }
 
 /// What to do with coordinates in degrees, which are not lengths.

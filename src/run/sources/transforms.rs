@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::proj;
+use super::proj::{self, TransformOptions};
 use crate::crs::{Crs, CrsKind, Transform};
 use crate::data::{Bounds, PointBatch};
 use crate::error::Result;
@@ -18,6 +18,13 @@ const STEPS_A_SIDE: usize = 32;
 /// By how much of its size a box is enlarged after a transform: operations that change within it,
 /// or that have a grid, move points by less.
 const MARGIN: f64 = 0.01;
+
+/// The system that coordinates are reprojected to, if they are, and how.
+#[derive(Clone, Copy)]
+pub(crate) struct TargetSystem<'a> {
+    pub(crate) crs: Option<&'a Crs>,
+    pub(crate) options: &'a TransformOptions,
+}
 
 /// The transforms in use, and for each file the index of its transform.
 pub(crate) struct Transforms {
@@ -37,22 +44,22 @@ impl Transforms {
     ///
     /// # Errors
     /// If there is no transform between two systems, or no PROJ.
-    pub(crate) fn new(from: &[Option<Crs>], to: Option<&Crs>, journal: &Journal) -> Result<Self> {
+    pub(crate) fn new(from: &[Option<Crs>], to: TargetSystem, journal: &Journal) -> Result<Self> {
         let mut transforms = Transforms {
             transforms: Vec::new(),
             by_file: Vec::with_capacity(from.len()),
         };
         for from in from {
-            let number = match (from, to) {
-                (Some(from), Some(to)) => {
+            let number = match (from, to.crs) {
+                (Some(from), Some(crs)) => {
                     let known = &mut transforms.transforms;
                     Some(match known.iter().position(|(crs, _)| crs == from) {
                         Some(number) => number,
                         None => {
-                            let transform = proj::transform(from, to)?;
+                            let transform = proj::transform(from, crs, to.options)?;
                             journal.add(Notice::Reprojecting(
                                 Box::new(from.clone()),
-                                Box::new(to.clone()),
+                                Box::new(crs.clone()),
                             ));
                             known.push((from.clone(), transform));
                             known.len() - 1

@@ -4,6 +4,7 @@
 mod accuracy;
 mod compare;
 mod contour;
+mod crs;
 mod drape;
 mod job;
 mod lines;
@@ -32,6 +33,7 @@ use crate::io::formats;
 pub(crate) use accuracy::AccuracyArgs;
 pub(crate) use compare::CompareArgs;
 pub(crate) use contour::ContourArgs;
+pub(crate) use crs::CrsArgs;
 pub(crate) use drape::DrapeArgs;
 pub(crate) use job::{JobAction, JobArgs};
 pub(crate) use lines::LineArgs;
@@ -145,6 +147,7 @@ pub(crate) enum Verb {
     Accuracy(AccuracyArgs),
     Check(CheckArgs),
     Run(RunArgs),
+    Crs(CrsArgs),
     Job(JobArgs),
     Demo(DemoArgs),
     Describe(DescribeArgs),

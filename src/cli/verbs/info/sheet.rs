@@ -3,8 +3,9 @@ use std::fmt::Write;
 
 use serde_json::{Map, Value, json};
 
+use crate::cli::report::systems::crs_json;
 use crate::cli::report::{escape, names};
-use crate::crs::{Crs, CrsKind};
+use crate::crs::Crs;
 use crate::data::Bounds;
 use crate::error::Wording;
 use crate::run::units::neat;
@@ -99,22 +100,7 @@ impl Sheet {
         let Some(crs) = crs else {
             return self.row("crs", "not stated", Value::Null);
         };
-        let kind = match crs.kind {
-            CrsKind::Projected => "projected",
-            CrsKind::Geographic => "geographic",
-            CrsKind::Geocentric => "geocentric",
-            CrsKind::Local => "local",
-        };
-        let value = json!({
-            "name": crs.name,
-            "epsg": crs.epsg,
-            "vertical_epsg": crs.vertical_epsg,
-            "kind": kind,
-            "unit": { "name": crs.unit.name, "factor": crs.unit.factor },
-            "vertical_unit": crs.vertical_unit.as_ref().map(|unit| json!({ "name": unit.name, "factor": unit.factor })),
-            "wkt": crs.wkt,
-        });
-        self.row("crs", crs.describe(), value);
+        self.row("crs", crs.describe(), crs_json(crs));
     }
 
     /// Returns the facts as text; warnings are printed elsewhere.

@@ -1,0 +1,28 @@
+//! Coordinate systems as JSON.
+
+use serde_json::{Value, json};
+
+use crate::crs::{Crs, CrsKind};
+
+/// Returns the kind of a system as a word.
+pub(crate) fn kind_of(crs: &Crs) -> &'static str {
+    match crs.kind {
+        CrsKind::Projected => "projected",
+        CrsKind::Geographic => "geographic",
+        CrsKind::Geocentric => "geocentric",
+        CrsKind::Local => "local",
+    }
+}
+
+/// Returns a system as a JSON object.
+pub(crate) fn crs_json(crs: &Crs) -> Value {
+    json!({
+        "name": crs.name,
+        "epsg": crs.epsg,
+        "vertical_epsg": crs.vertical_epsg,
+        "kind": kind_of(crs),
+        "unit": { "name": crs.unit.name, "factor": crs.unit.factor },
+        "vertical_unit": crs.vertical_unit.as_ref().map(|unit| json!({ "name": unit.name, "factor": unit.factor })),
+        "wkt": crs.wkt,
+    })
+}
