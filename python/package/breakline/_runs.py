@@ -65,10 +65,12 @@ def run(
     Examples
     --------
     >>> import breakline
-    >>> breakline.run({
-    ...     "input": {"files": "fixtures/valley.laz"},
-    ...     "product": [{"verb": "dem", "output": "dem.tif"}, {"verb": "volume", "plane": 840}],
-    ... })  # doctest: +SKIP
+    >>> report = breakline.run({
+    ...     "input": {"files": "valley.laz"},
+    ...     "product": [{"verb": "dem", "output": "all.tif"}, {"verb": "volume", "plane": 840}],
+    ... })
+    >>> [product["verb"] for product in report["products"]]
+    ['dem', 'volume']
     """
     is_mapping = isinstance(path, Mapping)
     file = None if is_mapping else _inputs.path(path, "path")

@@ -25,7 +25,10 @@ pub(crate) fn refusal(refused: &clap::Error, locations: &[(String, String)]) -> 
                 (None, false) => format!("expected one of {}", known.join(", ")),
                 (None, true) => "not a value for it".to_owned(),
             };
-            format!("{keys}: `{value}`: {why}")
+            match why.contains(&value) {
+                true => format!("{keys}: {why}"),
+                false => format!("{keys}: `{value}`: {why}"),
+            }
         }
         ErrorKind::MissingRequiredArgument => format!("{keys} is missing"),
         ErrorKind::ArgumentConflict => {
