@@ -56,7 +56,13 @@ pub(crate) fn crs(
         epoch,
     };
     work::run(py, &call, |context| -> Result<_> {
-        Ok(cli::systems_as_json(&from, to.as_deref(), at.as_deref(), &options, context)?)
+        Ok(cli::systems_as_json(
+            &from,
+            to.as_deref(),
+            at.as_deref(),
+            &options,
+            context,
+        )?)
     })
 }
 

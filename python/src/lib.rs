@@ -39,8 +39,8 @@ mod _breakline {
     use super::compare::compare;
     #[pymodule_export]
     use super::files::{
-        check_space, class_numbers, crs, describe, info, is_of_space, main, read_points, triangulate,
-        triangulate_space, write_points,
+        check_space, class_numbers, crs, describe, info, is_of_space, main, read_points,
+        triangulate, triangulate_space, write_points,
     };
     #[pymodule_export]
     use super::names::settings;

@@ -12,7 +12,7 @@ use super::verbs::targets::{Outputs, Targets};
 use super::verbs::{Keeps, Summary, SurfaceOptions, TileUse, WriteRequest};
 use super::write::{self, SurfaceReport};
 use crate::error::{Command, Error, Result, wording};
-use crate::io::{OutputSet, formats};
+use crate::io::OutputSet;
 use crate::terrain::Method;
 
 /// Surfaces that several products are made of. Each is built or read once, when it is first needed.
@@ -250,13 +250,7 @@ impl SharedProduct {
 
     /// Returns all files that are written, with those that formats write beside.
     pub fn writes(&self) -> Vec<PathBuf> {
-        let targets = self.outputs.targets.iter().chain(&self.outputs.labels);
-        let files = targets.flat_map(|target| {
-            let format = formats::of_name(&target.path);
-            let beside = format.map_or(&[][..], |format| format.beside);
-            formats::with_companions(&target.path, target.extension, beside)
-        });
-        let mut files: Vec<PathBuf> = files.map(|(path, _)| path).collect();
+        let mut files = self.outputs.files();
         files.extend(self.targets.tables().map(PathBuf::from));
         files
     }

@@ -125,13 +125,25 @@ fn read_list(list: &Path, found: &mut Vec<PathBuf>) -> Result<()> {
         if entry.is_empty() || entry.starts_with('#') {
             continue;
         }
-        expand_one(&folder.join(entry), found).map_err(|e| match e.path() {
+        expand_one(&in_folder(folder, entry), found).map_err(|e| match e.path() {
             // The missing file says more than the list that names it.
             Some(_) => e,
             None => e.in_file(list).at(format!("line {number}")),
         })?;
     }
     Ok(())
+}
+
+/// Returns the input that a file names which is in a folder. In the name of the folder, nothing
+/// stands for other names.
+pub(crate) fn in_folder(folder: &Path, input: &str) -> PathBuf {
+    let path = folder.join(input);
+    match folder.to_str() {
+        Some(text) if glob_of(folder).is_some() && file_of(&path).is_none() => {
+            Path::new(&glob::Pattern::escape(text)).join(input)
+        }
+        _ => path,
+    }
 }
 
 fn expand_one(path: &Path, found: &mut Vec<PathBuf>) -> Result<()> {

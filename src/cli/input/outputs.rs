@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::args::OutputArgs;
 use crate::error::Result;
-use crate::io::formats;
+use crate::io::formats::with_companions;
 use crate::run::targets;
 pub(crate) use crate::run::targets::{Format, formats_of};
 pub(crate) use crate::run::{Existing, Outputs, Target};
@@ -25,12 +25,8 @@ pub(crate) fn resolve<F: Copy>(
 }
 
 /// Returns the companions of a target, then the target itself.
-pub(crate) fn files_of<F: Copy>(target: &Target<F>, formats: &[Format<F>]) -> Vec<Target<F>> {
-    let format = formats
-        .iter()
-        .find(|format| format.extension == target.extension);
-    let companions = format.map_or(&[][..], |format| format.companions);
-    let mut files = formats::with_companions(&target.path, target.extension, companions);
+pub(crate) fn files_of<F: Copy>(target: &Target<F>) -> Vec<Target<F>> {
+    let mut files = with_companions(&target.path, target.extension, target.companions);
     files.rotate_left(1);
     files
         .into_iter()
@@ -38,6 +34,7 @@ pub(crate) fn files_of<F: Copy>(target: &Target<F>, formats: &[Format<F>]) -> Ve
             path,
             kind: target.kind,
             extension,
+            companions: &[],
         })
         .collect()
 }

@@ -65,7 +65,7 @@ impl Product for Accuracy<'_> {
     }
 
     fn writes(&self) -> Vec<PathBuf> {
-        product::all_files(&self.outputs, TABLES)
+        self.outputs.files()
     }
 
     fn make(

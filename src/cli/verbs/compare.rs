@@ -103,7 +103,7 @@ impl Product for Comparison<'_> {
     }
 
     fn writes(&self) -> Vec<PathBuf> {
-        product::all_files(&self.outputs, &formats())
+        self.outputs.files()
     }
 
     fn make(

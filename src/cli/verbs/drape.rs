@@ -65,7 +65,7 @@ impl Product for Drape<'_> {
     }
 
     fn writes(&self) -> Vec<PathBuf> {
-        product::all_files(&self.outputs, &outputs::formats_of(Formats::Lines, |_| ()))
+        self.outputs.files()
     }
 
     fn make(

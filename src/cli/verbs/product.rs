@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use serde_json::Value;
 
 use crate::cli::Exit;
-use crate::cli::input::outputs::Outputs;
 use crate::cli::input::plan::SurfacePlan;
 use crate::cli::report::console::Console;
 use crate::cli::report::escape;
@@ -13,8 +12,6 @@ use crate::cli::report::stdout::print;
 use crate::cli::report::written::print_file;
 use crate::error::{Error, Result};
 use crate::io::OutputSet;
-use crate::io::formats::with_companions;
-use crate::run::targets::Format;
 use crate::run::{Context, Summary, SurfaceProduct};
 use crate::terrain::Method;
 
@@ -70,20 +67,6 @@ pub(super) struct Answer {
     pub(super) json: Value,
     /// True if a limit that was asked for is not met.
     pub(super) is_failure: bool,
-}
-
-/// Returns the files that are written to targets, each followed by those that its format writes
-/// beside.
-pub(super) fn all_files<F>(outputs: &Outputs<F>, formats: &[Format<F>]) -> Vec<PathBuf> {
-    let files = outputs.targets.iter().flat_map(|target| {
-        let is_own = |format: &&Format<F>| format.extension == target.extension;
-        let beside = formats
-            .iter()
-            .find(is_own)
-            .map_or(&[][..], |format| format.companions);
-        with_companions(&target.path, target.extension, beside)
-    });
-    files.map(|(path, _)| path).collect()
 }
 
 /// Makes a product of its surfaces, which are built, and reports it; as an object in the form that

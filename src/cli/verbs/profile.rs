@@ -85,7 +85,7 @@ impl Product for ProfileAsked<'_> {
     }
 
     fn writes(&self) -> Vec<PathBuf> {
-        product::all_files(&self.outputs, PROFILES)
+        self.outputs.files()
     }
 
     fn make(

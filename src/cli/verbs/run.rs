@@ -165,14 +165,12 @@ impl<'a> Planned<'a> {
                 product,
             });
         }
-        let files = list.iter().map(|PlannedProduct { product, .. }| {
-            let mut reads = product.reads();
-            reads.extend(file.name().map(PathBuf::from));
-            ProductFiles {
+        let files = list
+            .iter()
+            .map(|PlannedProduct { product, .. }| ProductFiles {
                 writes: product.writes(),
-                reads,
-            }
-        });
+                reads: product.reads(),
+            });
         let mut files: Vec<ProductFiles> = files.collect();
         // Nobody writes it.
         files.push(ProductFiles {

@@ -121,7 +121,7 @@ impl Product for Sample<'_> {
     }
 
     fn writes(&self) -> Vec<PathBuf> {
-        product::all_files(&self.outputs, FORMATS)
+        self.outputs.files()
     }
 
     fn make(

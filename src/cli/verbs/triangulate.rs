@@ -64,7 +64,7 @@ pub(crate) fn run(args: &TriangulateArgs, console: &Console) -> Result<Exit> {
             .in_file(&mesh.path)
             .cure("add a vertex off the line; .node, .poly and .ele can also store vertices without triangles"));
     }
-    write(&outputs, &formats, &product, console)?;
+    write(&outputs, &product, console)?;
     print_report(&product, args.max_added, console);
     commit(outputs, console)?;
     Ok(Exit::Done)
@@ -83,12 +83,7 @@ fn options(args: &TriangulateArgs) -> TriangulateOptions {
 }
 
 /// Writes meshes and Triangle's files, the latter with their companions, each once.
-fn write(
-    outputs: &Outputs<Family>,
-    formats: &[Format<Family>],
-    product: &TriangulateProduct,
-    console: &Console,
-) -> Result<()> {
+fn write(outputs: &Outputs<Family>, product: &TriangulateProduct, console: &Console) -> Result<()> {
     let (meshes, others): (Vec<_>, Vec<_>) = outputs
         .targets
         .iter()
@@ -101,10 +96,7 @@ fn write(
         }
     }
     let mut files: Vec<Target<Family>> = Vec::new();
-    for file in others
-        .into_iter()
-        .flat_map(|target| outputs::files_of(target, formats))
-    {
+    for file in others.into_iter().flat_map(outputs::files_of) {
         if !files.contains(&file) {
             files.push(file);
         }

@@ -88,10 +88,7 @@ pub(super) fn run(args: &TriangulateArgs, console: &Console) -> Result<Exit> {
         }
     }
     let mut files: Vec<Target<Family>> = Vec::new();
-    for file in others
-        .into_iter()
-        .flat_map(|target| outputs::files_of(target, &formats))
-    {
+    for file in others.into_iter().flat_map(outputs::files_of) {
         if !files.contains(&file) {
             files.push(file);
         }

@@ -76,7 +76,7 @@ impl Product for Volume<'_> {
     }
 
     fn writes(&self) -> Vec<PathBuf> {
-        product::all_files(&self.outputs, TABLES)
+        self.outputs.files()
     }
 
     fn make(

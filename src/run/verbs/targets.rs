@@ -248,9 +248,17 @@ pub struct Target<F = ()> {
     pub(crate) kind: F,
     /// The extension of its format, whatever the path says.
     pub extension: &'static str,
+    /// Extensions of the files that are written with it.
+    pub(crate) companions: &'static [&'static str],
 }
 
 impl<F> Target<F> {
+    /// Returns the paths of the file and of those that are written with it.
+    pub(crate) fn files(&self) -> impl Iterator<Item = PathBuf> {
+        let files = formats::with_companions(&self.path, self.extension, self.companions);
+        files.into_iter().map(|(path, _)| path)
+    }
+
     /// Returns the destination for a writer.
     pub fn within<'a>(&'a self, set: &'a OutputSet) -> Destination<'a> {
         set.at(&self.path).in_format(self.extension)
@@ -269,6 +277,12 @@ pub struct Outputs<F = ()> {
 }
 
 impl<F> Outputs<F> {
+    /// Returns the paths of all files, with those that are written with them.
+    pub(crate) fn files(&self) -> Vec<PathBuf> {
+        let targets = self.targets.iter().chain(&self.labels);
+        targets.flat_map(Target::files).collect()
+    }
+
     /// Returns the smallest free space, in bytes, of the disks that are written to, and a file that
     /// goes there; `None` if the system does not report it.
     pub(crate) fn free_space(&self) -> Option<(u64, &Path)> {
@@ -307,6 +321,7 @@ pub(crate) fn resolve<F: Copy>(
             path: path.clone(),
             kind: format.kind,
             extension: format.extension,
+            companions: format.companions,
         });
     }
     Ok(Outputs {

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 use std::ffi::OsString;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::{Arg, ArgAction, Args, Command, CommandFactory, ValueHint};
 
@@ -10,6 +10,7 @@ use super::file::{Product, RunFile};
 use super::nearest::nearest;
 use super::tree::{Entry, Value};
 use crate::cli::input::args::{Cli, SurfaceArgs, TileArgs};
+use crate::cli::input::inputs::in_folder;
 use crate::error::{Error, Result};
 
 /// The key of the files of a surface, which have no name on the command line.
@@ -21,8 +22,8 @@ const VERB: &str = "verb";
 /// Verbs whose inputs are surfaces of their own: a product may have more `files`.
 const OF_SEVERAL_SURFACES: [&str; 3] = ["volume", "compare", "profile"];
 
-/// Options of surfaces that name a file to write, and so belong to a product.
-const TABLES: [&str; 2] = ["crossing_report", "flat_points"];
+/// Options that name a file to write, and so belong to a product.
+const WRITTEN: [&str; 4] = ["output", "labels_output", "crossing_report", "flat_points"];
 
 /// A product, in the words of a single command.
 #[derive(Debug)]
@@ -208,7 +209,7 @@ impl Vocabulary {
         let at = |e: Error| file.located(e, &location_of(entry, "input"));
         let args = || {
             let args = self.surface.get_arguments();
-            args.filter(|arg| !TABLES.contains(&arg.get_id().as_str()))
+            args.filter(|arg| !WRITTEN.contains(&arg.get_id().as_str()))
         };
         if let Some(arg) = args().find(|arg| is_named(arg, &entry.key)) {
             return of_entry(arg, entry, file).map_err(at);
@@ -234,7 +235,7 @@ impl Vocabulary {
             let id = arg.get_id().as_str();
             let is_file = id == "inputs" && OF_SEVERAL_SURFACES.contains(&name);
             !is_file
-                && !TABLES.contains(&id)
+                && !WRITTEN.contains(&id)
                 && self
                     .surface
                     .get_arguments()
@@ -344,24 +345,27 @@ fn of_entry(arg: &Arg, entry: &Entry, file: &RunFile) -> Result<Vec<OsString>> {
 
 /// Returns a value; a path relative to the run file with its folder.
 fn located(arg: &Arg, word: &str, folder: &Path) -> String {
-    let join = |word: &str| {
-        let joined = folder.join(word).to_string_lossy().into_owned();
+    let typed = |path: PathBuf| {
+        let text = path.to_string_lossy().into_owned();
         // Not an option.
-        match joined.starts_with('-') {
-            true => format!("./{joined}"),
-            false => joined,
+        match text.starts_with('-') {
+            true => format!("./{text}"),
+            false => text,
         }
     };
     // Standard input, a database or an address.
     let is_no_path = word == "-" || word.starts_with("PG:") || word.contains("://");
     match arg.get_value_hint() {
         ValueHint::AnyPath if is_no_path => word.to_owned(),
+        ValueHint::AnyPath if WRITTEN.contains(&arg.get_id().as_str()) => typed(folder.join(word)),
         ValueHint::AnyPath => match word.strip_prefix('@') {
-            Some(list) if !folder.join(word).exists() => format!("@{}", join(list)),
-            _ => join(word),
+            Some(list) if !folder.join(word).exists() => {
+                format!("@{}", typed(folder.join(list)))
+            }
+            _ => typed(in_folder(folder, word)),
         },
         // The name of something built in, or a file.
-        ValueHint::FilePath if folder.join(word).exists() => join(word),
+        ValueHint::FilePath if folder.join(word).exists() => typed(folder.join(word)),
         _ => word.to_owned(),
     }
 }
