@@ -333,27 +333,16 @@ fn files_are_reprojected_with_their_heights_in_one_piece_and_in_tiles() {
         );
         assert!((before[0] - after[0]).abs() < 1e-3);
     }
+    let dem = ["dem", "a.xyz", "--max-edge", "none", "--resolution", "5"];
+    run(&[&dem[..], &["-o", "one.tif"], &systems[..]].concat());
     run(&[
-        &["tin", "a.xyz", "--max-edge", "none", "-o", "one.tin"],
-        &systems[..],
-    ]
-    .concat());
-    run(&[
-        &[
-            "tin",
-            "a.xyz",
-            "--max-edge",
-            "none",
-            "--tiles",
-            "2x2",
-            "-o",
-            "tiles.tin",
-        ],
+        &dem[..],
+        &["--tiles", "2x2", "-o", "tiles.tif"],
         &systems[..],
     ]
     .concat());
     let bytes = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
-    assert_eq!(bytes("one.tin"), bytes("tiles.tin"));
+    assert_eq!(bytes("one.tif"), bytes("tiles.tif"));
 }
 
 /// Heights of EGM96 by its full harmonic expansion, as NGA publishes them with its program F477; a

@@ -251,9 +251,10 @@ fn point_json(point: &TransformedPoint) -> Value {
 
 fn operations_text(found: &Operations) -> String {
     let mut text = String::new();
-    let heights = match found.heights_are_transformed {
-        true => "transformed",
-        false => "not transformed between datums",
+    let heights = match (found.heights_are_transformed, &found.to.vertical_unit) {
+        (true, _) => "transformed",
+        (false, Some(_)) => "keep their datum",
+        (false, None) => "left as they are",
     };
     // Writing to a string cannot fail.
     let _ = writeln!(text, "from        {}", found.from.describe());
