@@ -789,7 +789,7 @@ fn there_is_a_man_page_for_each_verb() {
     run_in(&folder, &["man", "-o", "man1"]).fails(1, &["--overwrite"]);
     run_in(&folder, &["man", "-o", "man1", "--overwrite"]).works(&[]);
     let printed = run_in(&folder, &["man"]).stdout;
-    assert_eq!(printed.as_bytes(), bytes(&folder, "man1/breakline.1"));
+    assert!(printed.as_bytes() == bytes(&folder, "man1/breakline.1"));
     for page in &pages {
         let checked = std::process::Command::new("groff")
             .args(["-man", "-ww", "-Tutf8", "-z", page])

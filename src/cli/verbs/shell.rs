@@ -29,7 +29,7 @@ pub(crate) fn man(args: &ManArgs, console: &Console) -> Result<Exit> {
     program.build();
     let Some(folder) = &args.output else {
         let mut out = Stdout::new();
-        return match Man::new(program)
+        return match page_of(&program)
             .render(&mut out)
             .and_then(|()| out.flush())
         {

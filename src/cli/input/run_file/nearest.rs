@@ -2,7 +2,7 @@
 
 /// Returns the known name that is most like a name, if one is alike.
 pub(super) fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    let most = (name.chars().count() / 3).max(1);
+    let most = name.chars().count().div_ceil(3);
     let name = name.replace('_', "-");
     known
         .map(|known| (distance(&name, known), known))
