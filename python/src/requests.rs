@@ -129,6 +129,7 @@ pub(crate) struct MapArguments {
     keep_depressions: bool,
     index_every: Option<u32>,
     bands: bool,
+    in_plane: bool,
     /// Where the tops of labels are; `None` without labels.
     labels: Option<String>,
     label_height: Option<f64>,
@@ -160,6 +161,7 @@ pub(crate) fn map_options(given: MapArguments) -> PyResult<MapOptions> {
         keep_depressions: given.keep_depressions,
         index_every: given.index_every,
         bands: given.bands,
+        without_heights: given.in_plane,
         labels: labels
             .map(|name| choose("labels", name, &LABELS))
             .transpose()?,

@@ -17,7 +17,7 @@ PROGRAM = breakline.describe()
 VERBS = {verb["name"].replace("-", "_"): verb for verb in PROGRAM["verbs"]}
 
 #: Options of the program whose parameters here have other names.
-RENAMED = {"a-srs": "crs", "t-srs": "to_crs", "te": "extent", "class": "classes", "return": "returns", "3d": "in_space"}
+RENAMED = {"a-srs": "crs", "t-srs": "to_crs", "te": "extent", "class": "classes", "return": "returns", "3d": "in_space", "2d": "in_plane"}
 
 #: Verbs that are no functions, and why.
 NO_FUNCTIONS = {

@@ -84,8 +84,7 @@ fn in_files(
             e
         }
     })?;
-    let mut parts = open::tin_parts(&index).ok_or_else(|| not_there(&index))??;
-    parts.own(folder);
+    let parts = open::owned_parts(&index, folder)?;
     let mut notices = journal.take();
     if let WriteReport::Written(written) = report
         && let Written {
@@ -110,9 +109,4 @@ fn folder_of_large_files() -> PathBuf {
         true => on_disk.to_path_buf(),
         false => std::env::temp_dir(),
     }
-}
-
-#[cold]
-fn not_there(index: &Path) -> Error {
-    Error::other_job("the surface was removed by another process").in_file(index)
 }

@@ -101,8 +101,9 @@ pub use caps::{LeftOutAtRim, LostAtRim, LostCaps};
 pub use changes::{ChangedArea, changed_areas};
 pub use compact::{CompactTin, PartCell, TinIndex, TinIndexPart};
 pub use contour::{
-    Band, ContourLabel, Contours, LabelRules, LabelTops, MapContours, MapLine, MapRules,
-    contour_bands, contour_labels, contours, map_contours,
+    Band, ContourLabel, Contours, GoOn, LabelRules, LabelTops, MapContours, MapLine, MapRules,
+    contour_bands, contour_labels, contours, map_contours, map_contours_while, map_of_contours,
+    map_work,
 };
 pub use crossings::{CrossingHeights, CrossingRule};
 pub use difference::{Difference, LargeDifference, largest_differences};

@@ -131,11 +131,16 @@ fn what_cannot_be_is_refused_with_a_cure() {
             &["more than half of the interval 1", "use 0.5 at most"][..],
         ),
         (
-            "contour hills.xyz --smooth --tiles 2x2 -o c.shp",
+            "contour --smooth hills.xyz -o c.shp",
             &[
-                "contours for maps are drawn in one piece",
-                "without --tiles",
+                "`hills.xyz` is not a finite number",
+                "`hills.xyz --smooth -o ...`",
+                "`--smooth 0.25 hills.xyz`",
             ],
+        ),
+        (
+            "contour hills.xyz --smooth 0 -o c.shp",
+            &["0 is not above zero"],
         ),
         (
             "contour degrees.xyz --a-srs EPSG:4326 --force-degrees --max-edge none --smooth -o c.shp",

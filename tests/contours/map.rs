@@ -2,16 +2,23 @@
 
 use super::map_judge::{check_crossings, check_polygon, deviation, doubled_area, is_inside, meet};
 use breakline::data::{ContourLine, Mesh, Surface};
+use breakline::error::Error;
 use breakline::terrain::{
     Band, ContourLabel, LabelRules, LabelTops, Levels, Locator, MapContours, MapLine, MapRules,
-    Tin, TinBuilder, contour_labels, contours, map_contours,
+    Tin, TinBuilder, contour_labels, contours, map_contours, map_contours_while, map_work,
 };
+use std::sync::atomic::{AtomicU64, Ordering};
 use testkit::random::Random;
 
-/// Returns the number of random surfaces for each test: `BREAKLINE_MAP_SURFACES` asks for more.
+/// The number of random surfaces that is asked for.
+fn asked() -> Option<u64> {
+    std::env::var("BREAKLINE_MAP_SURFACES").ok()?.parse().ok()
+}
+
+/// Returns the number of random surfaces for each test: `BREAKLINE_MAP_SURFACES` asks for more,
+/// which are counted with `--nocapture`.
 fn rounds() -> u64 {
-    let asked = std::env::var("BREAKLINE_MAP_SURFACES").ok();
-    asked.and_then(|count| count.parse().ok()).unwrap_or(200)
+    asked().unwrap_or(200)
 }
 
 /// A surface, its interval, and the lines that hold it.
@@ -182,6 +189,9 @@ fn each_case(seed: u64, mut check: impl FnMut(&Case, &mut Random)) {
             _ => scattered(&mut random),
         };
         check(&case, &mut random);
+        if asked().is_some() && round % 500 == 499 {
+            println!("{} surfaces from seed {seed} on passed", round + 1);
+        }
     }
 }
 
@@ -494,6 +504,87 @@ fn labels_overlap_nothing_and_stand_upright() {
         }
     });
     assert!(count > 0);
+}
+
+/// Rings of a steep cone are nearer to each other than the spacing: each has a label nevertheless,
+/// and further labels keep the spacing from all.
+#[test]
+fn no_line_stays_bare_where_there_is_room() {
+    let points: Vec<[f64; 3]> = (0..61 * 61)
+        .map(|i| {
+            let [x, y] = [i % 61, i / 61].map(|c| 8.0 * f64::from(c) - 240.0);
+            [x, y, (240.0 - x.hypot(y)) / 8.0 + 0.3]
+        })
+        .collect();
+    let case = Case {
+        points,
+        lines: Vec::new(),
+        interval: 1.0,
+    };
+    let rules = MapRules::cartographic(1.0);
+    let found = map_contours(&case.tin(), &levels(&case), &rules).unwrap();
+    let of_interval = LabelRules {
+        height: 4.0,
+        ..LabelRules::of_interval(1.0)
+    };
+    let is_index = |line: &MapLine| line.number % 5 == 0;
+    let labels = contour_labels(&found.lines, is_index, &of_interval);
+    let mut several = 0;
+    for line in found.lines.iter().filter(|line| is_index(line)) {
+        let line = &line.line;
+        let own = labels.iter().filter(|label| label.level == line.level);
+        let count = own.count();
+        // The innermost ring bends too much.
+        assert!(count > 0 || line.level > 27.0, "no label at {}", line.level);
+        several += usize::from(count > 1);
+    }
+    assert!(several > 2, "{several}");
+    let of = |k: usize, other: &ContourLabel| {
+        let label: &ContourLabel = &labels[k];
+        (label.at[0] - other.at[0]).hypot(label.at[1] - other.at[1])
+    };
+    for (k, label) in labels.iter().enumerate() {
+        let near = labels[..k].iter().map(|other| of(k, other));
+        let nearest = near.fold(f64::INFINITY, f64::min);
+        assert!(nearest >= 1.5 * label.size[0], "{nearest}");
+    }
+}
+
+/// Work that is stopped at any point ends with that error; work that is not is counted.
+#[test]
+fn work_is_counted_and_can_be_stopped() {
+    let mut random = Random(11);
+    let case = scattered(&mut random);
+    let (tin, levels) = (case.tin(), levels(&case));
+    let rules = MapRules {
+        with_bands: true,
+        ..MapRules::cartographic(case.interval)
+    };
+    let expected = map_contours(&tin, &levels, &rules).unwrap();
+    let most = map_work(&tin, &rules);
+    let mut last = 0;
+    for asked in 0.. {
+        let (calls, work) = (AtomicU64::new(0), AtomicU64::new(0));
+        let go_on = |done| {
+            work.fetch_add(done, Ordering::Relaxed);
+            match calls.fetch_add(1, Ordering::Relaxed) < 1 << asked {
+                true => Ok(()),
+                false => Err(Error::usage("stopped")),
+            }
+        };
+        let found = map_contours_while(&tin, &levels, &rules, &go_on);
+        last = work.into_inner();
+        assert!(last <= most, "{last} of {most}");
+        match found {
+            Ok(found) => {
+                assert_eq!(found, expected);
+                assert!(asked > 3, "stopped at {asked} points");
+                break;
+            }
+            Err(error) => assert_eq!(error.to_string(), "stopped"),
+        }
+    }
+    assert!(last >= most / 6 * 4, "{last} of {most}");
 }
 
 /// Tops are uphill on a plane that rises in each of many directions.

@@ -2,7 +2,7 @@
 
 use testkit::random::Random;
 
-use super::{assert_parts_are_whole, landscape, layer, output_of, program, valley};
+use super::{assert_parts_are_whole, bytes, landscape, layer, output_of, program, valley};
 use program::{files_of, run_in};
 use testkit::lidar;
 
@@ -116,6 +116,57 @@ fn contours_in_tiles_are_those_of_the_valley() {
             );
         }
     }
+}
+
+/// Heights are smoothed across seams, regions join there, and lines are followed over them.
+#[test]
+fn contours_for_maps_in_tiles_are_those_of_one_piece() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut random = Random(108);
+    let height = |x: f64, y: f64| {
+        let waves = 4.0 * (x / 17.0).sin() + 3.0 * (y / 13.0).cos();
+        (100.0 * (waves + 0.02 * x)).round() / 100.0
+    };
+    let edge: Vec<[f64; 3]> = (0..36)
+        .map(|i| {
+            let [x, y] = [10.0 + 5.0 * f64::from(i), 70.0 + 10.0 * f64::from(i % 3)];
+            [x, y, height(x, y)]
+        })
+        .collect();
+    let lines = layer(&[edge], "LineString");
+    std::fs::write(folder.path().join("edge.geojson"), lines).unwrap();
+    let points: String = (0..6000)
+        .map(|_| {
+            let [x, y] = [200.0, 160.0].map(|side| (side * random.unit() * 4.0).round() / 4.0);
+            format!("{x} {y} {:.2}\n", height(x, y) + 0.2 * random.unit())
+        })
+        .collect();
+    std::fs::write(folder.path().join("points.xyz"), points).unwrap();
+    let files = "points.xyz --breaklines edge.geojson --max-edge 30 --labels-output labels.geojson";
+    for options in [
+        "--preset cartographic",
+        "--preset cartographic --bands --min-length 15 --keep-depressions",
+        "--smooth 0.25 --min-area 10",
+        "--simplify 0.2 --index-every 2 --labels uphill",
+        "--min-length 20",
+        "--min-area 40 --bands",
+        "--bands",
+        "--index-every 5",
+    ] {
+        let words = format!("contour {files} --interval 1 --label-height 1 {options}");
+        let whole = output_of(&folder, &words, "whole.geojson").0;
+        let labels = || bytes(folder.path().join("labels.geojson"));
+        let labels_of_whole = labels();
+        for tiling in ["--tiles 8x8", "--tiles 1x5"] {
+            let tiled = format!("{words} {tiling}");
+            let (tiled, said) = output_of(&folder, &tiled, "tiled.geojson");
+            assert!(tiled == whole, "{options} {tiling}: {said}");
+            assert!(said.contains("tiles       "), "{said}");
+            assert!(labels() == labels_of_whole, "labels: {options} {tiling}");
+        }
+    }
+    let left = files_of(folder.path());
+    assert!(!left.iter().any(|name| name.ends_with(".job")), "{left:?}");
 }
 
 /// Integer coordinates, where ties are the rule: many points share a site, files overlap, tiles are

@@ -10,11 +10,11 @@ from ._errors import usage
 #: Parameters of contours for maps, and their defaults.
 MAP: "dict[str, Any]" = {
     "preset": None, "smooth": None, "simplify": None, "min_length": None, "min_area": None, "keep_depressions": False,
-    "index_every": None, "bands": False, "labels_output": None, "labels": "readable", "label_height": None,
+    "index_every": None, "bands": False, "in_plane": False, "labels_output": None, "labels": "readable", "label_height": None,
 }  # fmt: skip
 
 #: Those of files: contours in memory have levels and points alone.
-_OF_FILES = ("index_every", "bands", "labels_output", "label_height")
+_OF_FILES = ("index_every", "bands", "in_plane", "labels_output", "label_height")
 
 
 def map_of(own: "dict[str, Any]") -> "dict[str, Any]":
@@ -34,6 +34,7 @@ def map_of(own: "dict[str, Any]") -> "dict[str, Any]":
         "keep_depressions": bool(own["keep_depressions"]),
         "index_every": every,
         "bands": bool(own["bands"]),
+        "in_plane": bool(own["in_plane"]),
         "labels": None if own["labels_output"] is None else _inputs.name(own["labels"], "labels"),
     }
 

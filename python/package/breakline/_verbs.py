@@ -324,6 +324,7 @@ def contour(
     keep_depressions: bool = ...,
     index_every: Optional[int] = ...,
     bands: bool = ...,
+    in_plane: bool = ...,
     labels_output: Optional[PathLike] = ...,
     labels: Labels = ...,
     label_height: Optional[float] = ...,
@@ -347,6 +348,7 @@ def contour(
     keep_depressions: bool = ...,
     index_every: Optional[int] = ...,
     bands: bool = ...,
+    in_plane: bool = ...,
     labels_output: Optional[PathLike] = ...,
     labels: Labels = ...,
     label_height: Optional[float] = ...,
@@ -367,6 +369,7 @@ def contour(
     keep_depressions: bool = False,
     index_every: Optional[int] = None,
     bands: bool = False,
+    in_plane: bool = False,
     labels_output: Optional[PathLike] = None,
     labels: Labels = "readable",
     label_height: Optional[float] = None,
@@ -405,8 +408,11 @@ def contour(
         Mark every Nth level in a field ``INDEX`` of the file.
     bands : bool
         Write the areas between the lines, with ``ELEV_MIN`` and ``ELEV_MAX``.
+    in_plane : bool
+        Write lines and labels without heights, which the field ``ELEV`` has.
     labels_output : path, optional
-        A file for labels: points with ``ELEV`` and ``ROTATION``, degrees counter-clockwise from east.
+        A file for labels: points with ``ELEV`` and ``ROTATION``, degrees counter-clockwise from east. A GeoPackage or a
+        DXF drawing can be that of the lines.
     labels : str
         Where the tops of labels are: ``"readable"`` (up on the sheet) or ``"uphill"``.
     label_height : float, optional

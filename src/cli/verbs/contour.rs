@@ -24,6 +24,7 @@ pub(super) fn asked(args: &ContourArgs, console: &Console) -> Result<Asked> {
             keep_depressions: map.keep_depressions,
             index_every: map.index_every,
             bands: map.bands,
+            without_heights: map.two_dimensions,
             labels: map.labels_output.as_ref().map(|_| map.labels.into()),
             label_height: map.label_height,
         },

@@ -20,6 +20,7 @@ use crate::io::codec::stl::Solid;
 use crate::io::codec::tetgen::Tetrahedralized;
 use crate::io::codec::triangle::Triangulated;
 use crate::io::options::layer as layer_options;
+use crate::io::options::map_sheet::MapSheet;
 use crate::io::options::points::Options;
 
 /// The kind of data that a file is read as.
@@ -175,6 +176,7 @@ type WriteColors = fn(Destination, &dyn BlockSource, &Colors) -> Result<()>;
 type WriteSpace = fn(&[Destination], &Tetrahedralized) -> Result<()>;
 type WritePlane = fn(&[Destination], &Triangulated) -> Result<()>;
 pub(super) type WriteLines = fn(Destination, &Layer) -> Result<Vec<String>>;
+pub(super) type WriteMap = fn(Destination, &MapSheet) -> Result<Vec<String>>;
 pub(super) type WriteContours =
     fn(Destination, &mut dyn Iterator<Item = ContourLine>, Option<&Crs>) -> Result<ContourSummary>;
 
@@ -196,6 +198,8 @@ pub(crate) struct Writers {
     pub(crate) contours: Option<WriteContours>,
     /// Writes lines with their attributes, and returns warnings.
     pub(crate) lines: Option<WriteLines>,
+    /// Writes contours of a map with their labels, and returns warnings.
+    pub(crate) map: Option<WriteMap>,
     /// Returns an error if contours with this many vertices are too large for the format.
     pub(crate) check_size: Option<fn(u64) -> Result<()>>,
     pub(crate) heights: Option<WriteHeights>,

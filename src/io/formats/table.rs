@@ -32,6 +32,7 @@ const NOT_WRITTEN: Writers = Writers {
     surface: None,
     contours: None,
     lines: None,
+    map: None,
     check_size: None,
     heights: None,
     shades: None,
@@ -347,10 +348,12 @@ pub static FORMATS: &[Format] = &[
         read_along: &["gpkg-wal"],
         gdal_names: &["GPKG"],
         reader: DATABASE,
-        writers: layer_writers(
-            |target, lines, crs| gpkg::write_contours(target, lines, crs),
-            |target, layer| gpkg::write_lines(target, layer),
-        ),
+        writers: Writers {
+            contours: Some(|target, lines, crs| gpkg::write_contours(target, lines, crs)),
+            lines: Some(|target, layer| gpkg::write_lines(target, layer)),
+            map: Some(gpkg::write_map),
+            ..NOT_WRITTEN
+        },
         help: "lines, polygons and points in named layers; contours; draped lines",
         ..ROW
     },
@@ -599,6 +602,8 @@ pub static FORMATS: &[Format] = &[
         writers: Writers {
             surface: Some(dxf::write_surface),
             lines: Some(dxf::write_lines),
+            contours: Some(dxf::write_contours),
+            map: Some(dxf::write_map),
             ..NOT_WRITTEN
         },
         holds: &[
@@ -608,7 +613,7 @@ pub static FORMATS: &[Format] = &[
             Holding::Edges,
         ],
         gdal_names: &["DXF"],
-        help: "drawings: lines and points of a layer; surfaces and draped lines; FILE:LAYER",
+        help: "drawings: lines and points of a layer; surfaces, contours and draped lines; FILE:LAYER",
         ..vector("DXF", "a DXF drawing", &["dxf"], &[])
     },
     Format {

@@ -1,11 +1,15 @@
 //! Writes contours to a file.
 
+use std::path::Path;
+
+use super::layer;
 use crate::crs::Crs;
 use crate::data::ContourLine;
 use crate::error::{Error, Result};
 use crate::io::bytes::output::Destination;
 pub use crate::io::codec::contour_summary::ContourSummary;
 use crate::io::formats::{self, Product, Writers};
+pub(crate) use crate::io::options::map_sheet::MapSheet;
 
 /// Returns an error if lines with `vertices` vertices in total are too large for the format of
 /// `target`.
@@ -19,6 +23,24 @@ pub fn check_size<'a>(target: impl Into<Destination<'a>>, vertices: u64) -> Resu
     check_size.map_or(Ok(()), |check_size| {
         check_size(vertices).map_err(|e| e.in_file(target.path()))
     })
+}
+
+/// Returns true if the format that the extension of a path names takes contours of a map with their
+/// labels in one file.
+pub(crate) fn takes_labels(path: &Path) -> bool {
+    formats::of_name(path).is_some_and(|format| format.writers.map.is_some())
+}
+
+/// Writes contours of a map in the format that the extension of `target` names, and returns
+/// warnings. Labels are left out unless the format [takes them](takes_labels).
+///
+/// # Errors
+/// Those of [`layer::write_lines`].
+pub(crate) fn write_map(target: Destination, sheet: &MapSheet) -> Result<Vec<String>> {
+    match formats::of_name(&target.format_path()).and_then(|format| format.writers.map) {
+        Some(write) => write(target, sheet),
+        None => layer::write_lines(target, sheet.shapes),
+    }
 }
 
 /// Writes contours in the format that the extension of `target` names, see

@@ -8,12 +8,14 @@ use super::task_file::TaskName;
 use crate::crs::Crs;
 use crate::data::{BlockSource, Bounds};
 use crate::error::{Command, Error, Result, Setting, wording};
-use crate::io::Destination;
 use crate::io::contours::ContourSummary;
+use crate::io::{Destination, Temporary};
 use crate::run::context::notice::Notice;
 use crate::run::context::{Context, Journal};
 use crate::run::products::contour::ContourOptions;
 use crate::run::products::frame::{self, FrameOptions};
+use crate::run::products::surface::{Model, SurfaceProduct};
+use crate::run::sources::open;
 use crate::run::sources::tin_parts::WrittenParts;
 use crate::run::verbs::Tiles;
 use crate::terrain::{CellValue, GradientSource};
@@ -234,6 +236,16 @@ impl Tiles for KeptTiles<'_> {
         job.require_triangles(report)?;
         let drawn = DrawnContours::open(job.step_files(), &contours.to_levels()?)?;
         target.put_whole(|target| drawn.write(target, report.crs.as_ref(), context))
+    }
+
+    fn surface(&self, context: &Context) -> Result<SurfaceProduct> {
+        let parent = self.job.folder();
+        let folder = Temporary::folder_in(parent).map_err(|e| Error::from(e).in_file(parent))?;
+        let index = folder.path().join("surface.tins");
+        self.write_parts(Destination::from(&index), context)?
+            .keep()?;
+        let parts = open::owned_parts(&index, folder)?;
+        Ok(Model::Parts(Box::new(parts)).into())
     }
 
     fn write_parts(&self, target: Destination, context: &Context) -> Result<WrittenParts> {

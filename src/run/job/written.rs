@@ -11,10 +11,10 @@ use super::lock::JobLock;
 use super::surface::has_all_parts;
 use super::{Job, JobReport};
 use crate::error::{Error, Result};
+use crate::io::formats::Product;
 use crate::io::{OutputSet, remove_abandoned};
 use crate::run::context::Context;
 use crate::run::sources::checksum::sum_of_file;
-use crate::run::verbs::Keeps;
 
 /// What a job has recorded of its outputs.
 #[derive(Debug, Serialize, Deserialize)]
@@ -150,7 +150,7 @@ impl Job {
             return Ok(false);
         }
         let has_parts = || {
-            !matches!(self.verb.keeps(), Keeps::Triangles)
+            self.verb.product() != Product::Surface
                 || outputs.iter().all(|output| has_all_parts(output))
         };
         let is_written = record.files.iter().all(|file| file.is_there(context));

@@ -25,11 +25,16 @@ pub(crate) type Layers<'a> = Vec<(&'a Path, Cow<'a, Layer>)>;
 pub(crate) fn write(layer: &Layer, target: Destination, context: &Context) -> Result<()> {
     let path = target.path();
     let warnings = target.put_whole(|target| layer::write_lines(target, layer))?;
+    note_warnings(path, warnings, context);
+    Ok(())
+}
+
+/// Reports what the writer of a file said.
+pub(crate) fn note_warnings(path: &Path, warnings: Vec<String>, context: &Context) {
     for text in warnings {
         let notice = Notice::Reader(path.to_path_buf(), text.into());
         context.monitor.notice(&notice);
     }
-    Ok(())
 }
 
 /// Reads layers with these columns, and adds a notice about each layer.

@@ -2,18 +2,19 @@
 
 use super::contour::ContourOptions;
 use super::map_options::MapOptions;
-use super::surface::SurfaceProduct;
+use super::surface::{Model, SurfaceProduct};
 use crate::crs::Crs;
 use crate::data::{Attributes, Layer, Shape, Value};
 use crate::error::{Error, Result};
 use crate::io::Destination;
-use crate::io::contours::ContourSummary;
+use crate::io::contours::{self, ContourSummary, MapSheet};
 use crate::run::context::notice::Notice;
 use crate::run::context::units::Units;
 use crate::run::context::watched::Watched;
 use crate::run::context::{Context, Journal, Size, Stage};
 use crate::run::lines::layers;
 use crate::run::sources::systems::reproject_first;
+use crate::run::sources::tin_parts;
 use crate::terrain::{self, ContourLabel, LabelRules, MapContours, MapLine, MapRules};
 
 /// Contours for a map, with what belongs to them.
@@ -29,6 +30,8 @@ pub struct ContourMap {
     /// What was assumed, in the order in which it was found.
     pub notices: Vec<Notice>,
     options: MapOptions,
+    /// The height of labels, in plan.
+    text_height: f64,
 }
 
 /// What was written of a map, counted.
@@ -52,11 +55,11 @@ pub struct MapSummary {
 ///
 /// # Errors
 /// If a level or a rule is not valid, the coordinates are in degrees or in another unit than the
-/// heights while a rule has lengths, the surface is damaged or too large for one piece, or the run
-/// is canceled.
+/// heights while a rule has lengths, the surface is damaged, or the run is canceled.
 ///
 /// # Complexity
-/// That of [`terrain::map_contours`]; the surface is in memory as a whole.
+/// That of [`terrain::map_contours`]. A surface in parts stays in its files; the lines, and about
+/// 100 bytes for each vertex, are in memory.
 pub fn contour_map(
     surface: &SurfaceProduct,
     options: &ContourOptions,
@@ -81,10 +84,29 @@ pub fn contour_map(
         .notice(surface.crs())
         .into_iter()
         .for_each(|notice| journal.add(notice));
-    let contours = surface.with_faces(context, |faces| {
-        let finding = context.start(Stage::FindingContours, Size::Uncounted)?;
+    let exact = match &surface.model {
+        // Lines that end at vertices are joined by what parts know of these.
+        Model::Parts(parts) if rules.keeps_exact() => {
+            Some(tin_parts::contours(parts, &levels, context)?)
+        }
+        _ => None,
+    };
+    let contours = surface.with_linked_faces(context, |faces| {
+        let size = match terrain::map_work(faces, &rules) {
+            0 => Size::Uncounted,
+            work => Size::Items(work),
+        };
+        let finding = context.start(Stage::FindingContours, size)?;
         let polled = Watched::polled(faces, context)?;
-        let found = terrain::map_contours(&polled, &levels, &rules);
+        // Progress is told less often than is asked whether to go on.
+        let go_on = |work| match work {
+            0 => context.check(),
+            _ => finding.add(work),
+        };
+        let found = match exact {
+            Some(lines) => terrain::map_of_contours(&polled, lines, &levels, &rules),
+            None => terrain::map_contours_while(&polled, &levels, &rules, &go_on),
+        };
         // A run that was canceled ends the surface early, which may look like an error.
         polled.end()?;
         let found = found?;
@@ -92,12 +114,13 @@ pub fn contour_map(
         Ok(found)
     })?;
     let index_step = map.index_step();
+    let label_rules = LabelRules::of_interval(levels.interval());
+    let text_height = map.label_height.unwrap_or(label_rules.height);
     let labels = map.labels.map(|tops| {
-        let from = LabelRules::of_interval(levels.interval());
         let rules = LabelRules {
-            height: map.label_height.unwrap_or(from.height),
+            height: text_height,
             tops,
-            ..from
+            ..label_rules
         };
         let is_labeled = |line: &MapLine| index_step.is_none_or(|step| is_index(line, step));
         terrain::contour_labels(&contours.lines, is_labeled, &rules)
@@ -108,6 +131,7 @@ pub fn contour_map(
         crs: surface.crs().cloned(),
         notices: journal.take(),
         options: *map,
+        text_height,
     })
 }
 
@@ -162,12 +186,13 @@ fn layer(
 impl ContourMap {
     /// Returns the lines with attributes: `ID` (from 1), `ELEV`, `DEPRESSION` (1 for a ring with
     /// lower ground inside, else 0) and, if index contours are marked, `INDEX` (1 or 0). Vertices
-    /// have the height of their line.
+    /// have the height of their line, unless they were asked for without heights.
     pub fn lines(&self) -> Layer {
         let index_step = self.options.index_step();
         let record = |of: &MapLine| {
             let level = of.line.level;
-            let points = of.line.points.iter().map(|&[x, y]| [x, y, level]).collect();
+            let z = self.height(level);
+            let points = of.line.points.iter().map(|&[x, y]| [x, y, z]).collect();
             let mut row = vec![
                 Value::Number(level),
                 Value::Whole(i64::from(of.is_depression)),
@@ -184,6 +209,14 @@ impl ContourMap {
             names,
             self.contours.lines.iter().map(record),
         )
+    }
+
+    /// Returns the height of a vertex at a level.
+    fn height(&self, level: f64) -> f64 {
+        match self.options.without_heights {
+            true => f64::NAN,
+            false => level,
+        }
     }
 
     /// Returns the areas between the lines as polygons with attributes: `ID`, `ELEV_MIN` and
@@ -204,7 +237,7 @@ impl ContourMap {
         let record = |label: &ContourLabel| {
             let [x, y] = label.at;
             let row = [label.level, label.rotation].map(Value::Number).to_vec();
-            (Shape::Points(vec![[x, y, label.level]]), row)
+            (Shape::Points(vec![[x, y, self.height(label.level)]]), row)
         };
         let labels = self.labels.iter().map(record);
         layer("labels", &self.crs, &["ELEV", "ROTATION"], labels)
@@ -232,11 +265,37 @@ impl ContourMap {
     /// # Errors
     /// If the format cannot be written, has no room for them, or the file cannot be written.
     pub fn write(&self, target: Destination, context: &Context) -> Result<()> {
-        let layer = match self.options.bands {
+        self.write_sheet(None, target, context)
+    }
+
+    /// Like [`write`](Self::write), with the labels in the same file: GeoPackage has a second layer
+    /// for them, and DXF texts.
+    ///
+    /// # Errors
+    /// Those of [`write`](Self::write).
+    pub fn write_with_labels(&self, target: Destination, context: &Context) -> Result<()> {
+        self.write_sheet(Some(&self.labels()), target, context)
+    }
+
+    fn write_sheet(
+        &self,
+        labels: Option<&Layer>,
+        target: Destination,
+        context: &Context,
+    ) -> Result<()> {
+        let shapes = match self.options.bands {
             true => self.bands(),
             false => self.lines(),
         };
-        layers::write(&layer, target, context)
+        let sheet = MapSheet {
+            shapes: &shapes,
+            labels,
+            text_height: self.text_height,
+        };
+        let path = target.path();
+        let warnings = target.put_whole(|target| contours::write_map(target, &sheet))?;
+        layers::note_warnings(path, warnings, context);
+        Ok(())
     }
 
     /// Writes the labels.

@@ -25,6 +25,8 @@ pub struct MapOptions {
     pub index_every: Option<u32>,
     /// Writes the areas between the lines instead of the lines.
     pub bands: bool,
+    /// Writes lines and labels without heights, which are attributes only.
+    pub without_heights: bool,
     /// Places labels on the index contours, or on all lines if none are marked.
     pub labels: Option<LabelTops>,
     /// The height of labels on the ground; two intervals if it is `None`.

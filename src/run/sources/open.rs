@@ -13,6 +13,7 @@ use crate::data::{
     BlockSource, Frame, Grid, Layer, LinkFlaw, Mesh, PointInfo, PointSource, Shape, Triangles,
 };
 use crate::error::{Error, Kind, Result};
+use crate::io::Temporary;
 use crate::io::ascii_grid::AsciiGrid;
 pub(crate) use crate::io::formats::Content;
 use crate::io::formats::{self, Format, Holding};
@@ -375,6 +376,15 @@ pub(crate) fn tin(path: &Path) -> Option<Result<CompactTin<Mapped>>> {
 /// Opens a TIN in parts; `None` if the file is not the index of one.
 pub(crate) fn tin_parts(path: &Path) -> Option<Result<TinParts>> {
     mesh::read_tin_index(path).map(|text| TinParts::open(path, &text?))
+}
+
+/// Opens a TIN in parts whose files are in a folder that is removed with it.
+pub(crate) fn owned_parts(index: &Path, folder: Temporary) -> Result<TinParts> {
+    let not_there =
+        || Error::other_job("the surface was removed by another process").in_file(index);
+    let mut parts = tin_parts(index).ok_or_else(not_there)??;
+    parts.own(folder);
+    Ok(parts)
 }
 
 /// Reads a mesh that may not be a surface: its triangles, linked where possible, and the flaws of

@@ -3,8 +3,8 @@
 use std::fmt::Debug;
 
 use super::targets::{Outputs, Target};
-use super::{Keeps, Summary, TileUse, Tiles, Verb};
-use crate::error::{Command, Error, Result, Setting, wording};
+use super::{Keeps, Summary, Tiles, Verb};
+use crate::error::{Result, Setting};
 use crate::io::Destination;
 use crate::io::contours::ContourSummary;
 use crate::io::formats::Product;
@@ -39,27 +39,10 @@ impl Verb for ContourOptions {
         add(Setting::Interval, interval);
         add(Setting::Base, base);
         add(Setting::Levels, levels);
-        // Only exact lines are drawn in jobs: the lists of those that began without maps stay.
+        // The lists of jobs that began before there were maps stay.
         if map.is_asked_for() {
             add(Setting::Preset, map);
         }
-    }
-
-    fn use_of_tiles(&self, targets: &[Target]) -> Result<TileUse> {
-        if !self.map.is_asked_for() {
-            return Ok(TileUse::Optional);
-        }
-        let error = Error::usage("contours for maps are drawn in one piece").cure(wording![
-            "without ",
-            Setting::Tiles,
-            ", the whole surface is in memory; for more points, draw exact contours, or those of a surface in parts that ",
-            Command::Tin,
-            " writes (.tins) or of a simplified one"
-        ]);
-        Ok(TileUse::Never(match targets {
-            [target, ..] => error.in_file(&target.path),
-            [] => error,
-        }))
     }
 
     fn takes(&self, _source: &Source) -> Result<()> {
@@ -80,7 +63,10 @@ impl Verb for ContourOptions {
     }
 
     fn keeps(&self) -> Keeps<'_> {
-        Keeps::Contours(self)
+        match self.map.is_asked_for() {
+            true => Keeps::Triangles,
+            false => Keeps::Contours(self),
+        }
     }
 
     fn write_tiles(
@@ -89,6 +75,9 @@ impl Verb for ContourOptions {
         outputs: &Outputs,
         context: &Context,
     ) -> Result<Summary> {
+        if self.map.is_asked_for() {
+            return write_map(&tiles.surface(context)?, self, outputs, context);
+        }
         write_all(outputs, context, |target| {
             tiles.write_contours(self, target, context)
         })
@@ -102,10 +91,16 @@ fn write_map(
     context: &Context,
 ) -> Result<Summary> {
     let map = contour_map(surface, options, context)?;
+    let labels = outputs.labels.as_ref();
+    let has_labels = |target: &Target| labels.is_some_and(|labels| labels.path == target.path);
     for target in &outputs.targets {
-        map.write(target.within(&outputs.set), context)?;
+        let within = target.within(&outputs.set);
+        match has_labels(target) {
+            true => map.write_with_labels(within, context)?,
+            false => map.write(within, context)?,
+        }
     }
-    if let Some(target) = &outputs.labels {
+    if let Some(target) = labels.filter(|_| !outputs.targets.iter().any(has_labels)) {
         map.write_labels(target.within(&outputs.set), context)?;
     }
     Ok(Summary::Map(map.summary()))

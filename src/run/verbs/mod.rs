@@ -227,6 +227,12 @@ pub trait Tiles {
         context: &Context,
     ) -> Result<ContourSummary>;
 
+    /// Returns the surface in parts, whose files are removed with it.
+    ///
+    /// # Errors
+    /// Those of [`write_parts`](Self::write_parts).
+    fn surface(&self, context: &Context) -> Result<SurfaceProduct>;
+
     /// Writes the triangulations of the tasks as a TIN in parts.
     ///
     /// # Errors

@@ -8,7 +8,7 @@ use crate::error::{Error, Result, Setting, wording};
 use crate::io::formats::{self, Product};
 #[cfg(feature = "cli")]
 use crate::io::profiles;
-use crate::io::{self, Destination, Output, OutputSet, layer};
+use crate::io::{self, Destination, Output, OutputSet, contours, layer};
 use crate::run::context::Context;
 use crate::run::context::notice::Notice;
 use crate::run::context::units::bytes;
@@ -126,6 +126,14 @@ impl Targets {
             let formats = formats_of(Product::Lines, |_| ());
             let found = resolve(std::slice::from_ref(labels), &may_replace, &formats, read)?;
             outputs.labels = found.targets.into_iter().next();
+            // One name for one file, however it is written.
+            let same = outputs
+                .targets
+                .iter()
+                .find(|own| is_same(&own.path, labels));
+            if let (Some(own), Some(labels)) = (same, &mut outputs.labels) {
+                labels.path.clone_from(&own.path);
+            }
         }
         self.check_tables(read)?;
         let is_target = |table: &&Path| {
@@ -134,7 +142,11 @@ impl Targets {
                 .iter()
                 .any(|target| is_same(&target.path, table))
         };
-        let labels = self.labels.as_deref();
+        // Some formats have room for both.
+        let labels = self
+            .labels
+            .as_deref()
+            .filter(|labels| !(product == Product::Contours && contours::takes_labels(labels)));
         match self.tables().chain(labels).find(is_target) {
             Some(table) => Err(Error::usage("the output is named twice").in_file(table)),
             None => Ok(outputs),

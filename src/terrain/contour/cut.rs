@@ -102,21 +102,38 @@ impl<'a, S: Surface + ?Sized> LevelCut<'a, S> {
         at[2].partial_cmp(&self.level).unwrap_or(Less)
     }
 
-    /// The face across the edge opposite corner `i`, which has these ends: its number, its vertices
-    /// and its corner opposite the edge.
+    /// The face across the edge opposite corner `i`, which has these ends at these positions: its
+    /// number, its vertices and its corner opposite the edge.
     #[inline]
-    fn beyond(&self, face: u32, i: usize, [a, b]: [u32; 2]) -> Option<(u32, [u32; 3], usize)> {
+    fn beyond(
+        &self,
+        face: u32,
+        i: usize,
+        [a, b]: [u32; 2],
+        at: [[f64; 3]; 2],
+    ) -> Option<(u32, [u32; 3], usize)> {
         let id = self.surface.neighbor(face, i)?;
         let vertices = self.surface.face(id)?;
-        let j = (0..3).find(|&j| vertices[(j + 1) % 3] == b && vertices[(j + 2) % 3] == a)?;
+        let j = (0..3)
+            .find(|&j| vertices[(j + 1) % 3] == b && vertices[(j + 2) % 3] == a)
+            .or_else(|| self.opposite(vertices, at))?;
         Some((id, vertices, j))
+    }
+
+    /// The corner opposite an edge of a face in another part of a surface, where vertices have
+    /// other numbers.
+    #[cold]
+    fn opposite(&self, vertices: [u32; 3], [a, b]: [[f64; 3]; 2]) -> Option<usize> {
+        let corners = vertices.map(|v| self.surface.position(v));
+        (0..3).find(|&j| corners[(j + 1) % 3] == b && corners[(j + 2) % 3] == a)
     }
 
     /// The face across the edge opposite corner `i`, and its corner opposite the edge.
     pub(super) fn across(&self, face: &Face, i: usize) -> Option<(Face, usize)> {
         let edge = [(i + 2) % 3, (i + 1) % 3];
         let [b, a] = edge.map(|k| face.vertices[k]);
-        let (id, vertices, j) = self.beyond(face.id, i, [a, b])?;
+        let at = [edge[1], edge[0]].map(|k| face.at[k]);
+        let (id, vertices, j) = self.beyond(face.id, i, [a, b], at)?;
         let new = self.surface.position(vertices[j]);
         let mut other = Face {
             id,
@@ -142,7 +159,7 @@ impl<'a, S: Surface + ?Sized> LevelCut<'a, S> {
     /// What a line meets that passes an edge.
     #[inline]
     pub(super) fn pass(&self, edge: &PassedEdge, direction: Direction) -> Option<Beyond> {
-        let (id, vertices, j) = self.beyond(edge.face, edge.opposite, edge.vertices)?;
+        let (id, vertices, j) = self.beyond(edge.face, edge.opposite, edge.vertices, edge.at)?;
         let new = self.surface.position(vertices[j]);
         let side = self.side(new);
         if side == Equal {

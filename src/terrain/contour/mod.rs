@@ -122,8 +122,8 @@ use bands::Bands;
 pub(super) use cut::crossing;
 use join::Joined;
 pub use map::{
-    Band, ContourLabel, LabelRules, LabelTops, MapContours, MapLine, MapRules, contour_bands,
-    contour_labels, map_contours,
+    Band, ContourLabel, GoOn, LabelRules, LabelTops, MapContours, MapLine, MapRules, contour_bands,
+    contour_labels, map_contours, map_contours_while, map_of_contours, map_work,
 };
 use narrow::{Bends, NarrowArcs};
 pub(super) use polygons::Polygons;

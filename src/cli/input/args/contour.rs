@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::parse::{finite, not_negative, positive};
+use super::parse::{finite, not_negative, positive, smoothing};
 use super::surface::SurfaceArgs;
 use super::tiles::TileArgs;
 use super::verbs::OutputArgs;
@@ -15,12 +15,12 @@ use crate::terrain::LabelTops;
 ///
 /// Contours are drawn exactly on the triangles (of a DEM: between the centers of its cells), joined
 /// to the longest possible lines, with higher ground on the right. The output is .shp (PolyLineZ
-/// with field ELEV), .gpkg or .geojson. Points may need more memory than there is: then the work is
+/// with field ELEV), .gpkg, .geojson or .dxf. Points may need more memory than there is: then the work is
 /// done in tiles (--tiles, --memory).
 ///
 /// For a map, lines are smoothed and simplified with a promise: none is off the surface by more
 /// than the tolerance, none crosses another line or itself, and each breakline is crossed where the
-/// heights along it say. Such lines have a field DEPRESSION; the surface is in memory as a whole.
+/// heights along it say. Such lines have a field DEPRESSION.
 #[derive(Debug, Clone, Args)]
 #[command(after_long_help = "\
 Example:
@@ -77,8 +77,8 @@ pub(crate) struct MapArgs {
     /// Smooth the lines, as far as they stay this near to the surface [default: half an interval]
     ///
     /// The largest difference in height along a line, in the units of the heights: at most half of
-    /// the interval. Orienteering maps allow a quarter.
-    #[arg(long, value_name = "TOLERANCE", num_args = 0..=1, value_parser = positive, allow_negative_numbers = true)]
+    /// the interval. Orienteering maps allow a quarter. Without a number, no file may follow.
+    #[arg(long, value_name = "TOLERANCE", num_args = 0..=1, value_parser = smoothing, allow_negative_numbers = true)]
     pub(crate) smooth: Option<Option<f64>>,
 
     /// Leave out vertices that are this near to the line
@@ -114,8 +114,13 @@ pub(crate) struct MapArgs {
     #[arg(long)]
     pub(crate) bands: bool,
 
+    /// Write lines and labels without heights, which the field ELEV has
+    #[arg(long = "2d")]
+    pub(crate) two_dimensions: bool,
+
     /// File for labels: points with ELEV and ROTATION
     ///
+    /// A GeoPackage or a DXF drawing can be that of the lines: it then has a second layer, or texts.
     /// On index lines, if any are marked, where they are straight; no label overlaps another one or
     /// another line. ROTATION is the direction of the text in degrees, counter-clockwise from east.
     #[arg(long, value_name = "FILE")]

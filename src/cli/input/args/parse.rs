@@ -211,6 +211,17 @@ pub(super) fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Parses the value of `--smooth`, which may be left out: then the next word is taken for it.
+pub(super) fn smoothing(text: &str) -> Result<f64, String> {
+    let of_others = |cause: String| match finite(text) {
+        Ok(_) => cause,
+        Err(_) => format!(
+            "{cause}; without a tolerance, another option has to follow: `{text} --smooth -o ...`; with one: `--smooth 0.25 {text}`"
+        ),
+    };
+    positive(text).map_err(of_others)
+}
+
 /// Parses a finite number that is not negative.
 pub(super) fn not_negative(text: &str) -> Result<f64, String> {
     match finite(text)? {

@@ -1,11 +1,13 @@
 //! DXF drawings of release 12 (AC1009), as text: triangles, lines, polylines and texts on layers.
 //! Every CAD program reads them.
 
+mod contours;
 mod read;
 
 use std::collections::BTreeSet;
 use std::io::{Result, Write};
 
+pub(crate) use contours::{write_contours, write_map};
 pub(crate) use read::read;
 
 use crate::crs::Crs;
@@ -274,6 +276,40 @@ impl<'a> Dxf<'a> {
             self.word(70, "32")?;
         }
         self.entity("SEQEND", layer)
+    }
+
+    /// Draws a polyline in the plane at a height. One that ends where it begins is closed.
+    fn contour(&mut self, layer: usize, height: f64, points: &[[f64; 2]]) -> Result<()> {
+        let is_closed = points.len() > 2 && points.first() == points.last();
+        let height = if height.is_finite() { height } else { 0.0 };
+        self.entity("POLYLINE", layer)?;
+        self.words(&[(66, "1")])?;
+        self.point(0, [0.0, 0.0, height])?;
+        self.word(70, if is_closed { "1" } else { "0" })?;
+        let count = points.len() - usize::from(is_closed);
+        for &[x, y] in &points[..count] {
+            self.entity("VERTEX", layer)?;
+            self.point(0, [x, y, height])?;
+        }
+        self.entity("SEQEND", layer)
+    }
+
+    /// Writes a text around a position, in a direction in degrees counter-clockwise from x.
+    fn centered(
+        &mut self,
+        layer: usize,
+        at: [f64; 3],
+        height: f64,
+        direction: f64,
+        text: &str,
+    ) -> Result<()> {
+        self.entity("TEXT", layer)?;
+        self.point(0, at)?;
+        self.number(40, height)?;
+        self.word(1, &encoded(text))?;
+        self.number(50, direction)?;
+        self.words(&[(72, "1"), (73, "2")])?;
+        self.point(1, at)
     }
 
     /// Writes a text above a position.

@@ -9,6 +9,7 @@ use crate::io::Watch;
 use crate::io::bytes::output::Destination;
 use crate::io::codec::contour_summary::ContourSummary;
 use crate::io::options::layer::Options;
+use crate::io::options::map_sheet::MapSheet;
 
 /// Returns an error: this build has no SQLite.
 ///
@@ -36,6 +37,14 @@ pub fn write_contours<'a>(
 /// Always; the message says which feature is missing.
 pub fn write_lines<'a>(target: impl Into<Destination<'a>>, _layer: &Layer) -> Result<Vec<String>> {
     Err(missing(target.into().path()))
+}
+
+/// Returns an error: this build has no SQLite.
+///
+/// # Errors
+/// Always; the message says which feature is missing.
+pub(crate) fn write_map(target: Destination, _sheet: &MapSheet) -> Result<Vec<String>> {
+    Err(missing(target.path()))
 }
 
 fn missing(path: &Path) -> Error {

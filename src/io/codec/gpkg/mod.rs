@@ -15,9 +15,13 @@ mod tests;
 mod write;
 
 #[cfg(not(feature = "gpkg"))]
+pub(crate) use absent::write_map;
+#[cfg(not(feature = "gpkg"))]
 pub use absent::{read_layer_with, write_contours, write_lines};
 #[cfg(feature = "gpkg")]
 pub use read::read_layer_with;
+#[cfg(feature = "gpkg")]
+pub(crate) use write::write_map;
 #[cfg(feature = "gpkg")]
 pub use write::{write_contours, write_lines};
 

@@ -13,6 +13,7 @@ use crate::error::{Error, Result};
 use crate::io::bytes::appended::appended;
 use crate::io::bytes::output::{Destination, is_stream};
 use crate::io::codec::contour_summary::ContourSummary;
+use crate::io::options::map_sheet::MapSheet;
 
 /// The columns of the key and of the geometry.
 const KEY: &str = "fid";
@@ -139,7 +140,7 @@ pub fn write_contours<'a>(
         columns: vec![("ID".to_owned(), "INTEGER"), ("ELEV".to_owned(), "REAL")],
         crs,
     };
-    write(target.into(), &head, |layer| {
+    let fill = |layer: &mut Records| {
         let mut summary = ContourSummary::default();
         for line in lines.filter(|line| line.points.len() > 1) {
             let bounds = summary.add(&line);
@@ -152,6 +153,9 @@ pub fn write_contours<'a>(
             layer.add(&shape, &bounds, &values)?;
         }
         Ok(summary)
+    };
+    write(target.into(), |database, name| {
+        add_layer(database, name, &head, fill)
     })
 }
 
@@ -165,17 +169,36 @@ pub fn write_contours<'a>(
 /// # Errors
 /// As [`write_contours`].
 pub fn write_lines<'a>(target: impl Into<Destination<'a>>, layer: &Layer) -> Result<Vec<String>> {
+    write(target.into(), |database, name| {
+        add_shapes(database, name, layer)
+    })
+}
+
+/// Writes contours of a map as [`write_lines`] does, and labels as a second layer, whose name is
+/// that of the file and `_labels`. Returns warnings.
+///
+/// # Errors
+/// As [`write_contours`].
+pub(crate) fn write_map(target: Destination, sheet: &MapSheet) -> Result<Vec<String>> {
+    write(target, |database, name| {
+        let mut warnings = add_shapes(database, name, sheet.shapes)?;
+        if let Some(labels) = sheet.labels {
+            warnings.extend(add_shapes(database, &format!("{name}_labels"), labels)?);
+        }
+        Ok(warnings)
+    })
+}
+
+/// Adds the shapes of a layer with all its attributes to a database, and returns warnings.
+fn add_shapes(database: &Connection, name: &str, layer: &Layer) -> Result<Vec<String>> {
     let mut warnings = Vec::new();
-    let target = target.into();
     let columns = columns(layer, &mut warnings);
     if columns.len() > MOST_COLUMNS {
         let error = format!(
             "{} attributes, where a GeoPackage has room for {MOST_COLUMNS}",
             columns.len()
         );
-        return Err(Error::limit(error)
-            .in_file(target.path())
-            .cure("write GeoJSON, or remove attributes"));
+        return Err(Error::limit(error).cure("write GeoJSON, or remove attributes"));
     }
     let shapes = || layer.shapes.iter();
     let crs = layer.crs.as_ref();
@@ -189,7 +212,7 @@ pub fn write_lines<'a>(target: impl Into<Destination<'a>>, layer: &Layer) -> Res
         columns,
         crs,
     };
-    write(target, &head, |out| {
+    add_layer(database, name, &head, |out| {
         for (i, shape) in shapes().enumerate() {
             let mut bounds = Bounds::default();
             shape.vertices().for_each(|p| bounds.add(*p));
@@ -270,13 +293,9 @@ fn unwritten(error: rusqlite::Error) -> Error {
     std::io::Error::other(error).into()
 }
 
-/// Creates a database, calls a function that adds the records of its only layer, and takes the
+/// Creates a database, calls a function that adds layers with the name of the file, and takes the
 /// file.
-fn write<T>(
-    target: Destination,
-    head: &Head,
-    add: impl FnOnce(&mut Records) -> Result<T>,
-) -> Result<T> {
+fn write<T>(target: Destination, fill: impl FnOnce(&Connection, &str) -> Result<T>) -> Result<T> {
     let no_file = || {
         Error::usage("a GeoPackage is a database, which a pipe cannot take")
             .in_file(target.path())
@@ -302,7 +321,9 @@ fn write<T>(
     let flags = OpenFlags::SQLITE_OPEN_READ_WRITE | OpenFlags::SQLITE_OPEN_NO_MUTEX;
     let write = || {
         let database = Connection::open_with_flags(hidden, flags).map_err(unwritten)?;
-        let written = fill(&database, &name, head, add)?;
+        database.execute_batch(BEGIN).map_err(unwritten)?;
+        let written = fill(&database, &name)?;
+        database.execute_batch("COMMIT").map_err(unwritten)?;
         database.close().map_err(|(_, error)| unwritten(error))?;
         Ok(written)
     };
@@ -313,14 +334,13 @@ fn write<T>(
     Ok(written)
 }
 
-/// Fills an empty database.
-fn fill<T>(
+/// Adds a layer to a database, whose records a function adds.
+fn add_layer<T>(
     database: &Connection,
     name: &str,
     head: &Head,
     add: impl FnOnce(&mut Records) -> Result<T>,
 ) -> Result<T> {
-    database.execute_batch(BEGIN).map_err(unwritten)?;
     let form = head.form;
     add_systems(database, head.crs, form.system)?;
     let (table, index) = (quoted(name), quoted(&format!("rtree_{name}_{GEOMETRY}")));
@@ -380,7 +400,6 @@ fn fill<T>(
         .map_err(unwritten)?;
     database
         .execute_batch(&triggers(name, &table))
-        .and_then(|()| database.execute_batch("COMMIT"))
         .map_err(unwritten)?;
     Ok(written)
 }

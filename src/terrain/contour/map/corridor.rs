@@ -2,8 +2,10 @@
 
 use rustc_hash::FxHashMap;
 
+use super::GoOn;
 use super::reshaped::{Divided, is_held};
 use crate::data::{Surface, corners};
+use crate::error::Result;
 use crate::terrain::contour::crossing;
 use crate::terrain::contour::index::LevelIndex;
 use crate::terrain::linear::{plan, sorted};
@@ -22,6 +24,7 @@ pub(super) struct Corridor<'a> {
     /// The largest difference of heights from the level along lines.
     half_width: f64,
     anchors: Anchors,
+    go_on: GoOn<'a>,
 }
 
 /// Edges that lines meet where they are, and not elsewhere: held ones and those of the rim. Each
@@ -38,7 +41,12 @@ impl<'a> Corridor<'a> {
     /// # Complexity
     /// Linear in the faces, on one thread; about 70 bytes for each crossing of a level with a held
     /// edge or the rim.
-    pub(super) fn new(surface: &'a dyn Surface, index: &LevelIndex, half_width: f64) -> Self {
+    pub(super) fn new(
+        surface: &'a dyn Surface,
+        index: &LevelIndex,
+        half_width: f64,
+        go_on: GoOn<'a>,
+    ) -> Self {
         let mut anchors = Anchors::default();
         for (face, vertices) in corners(surface) {
             for i in 0..3 {
@@ -59,6 +67,7 @@ impl<'a> Corridor<'a> {
             surface,
             half_width,
             anchors,
+            go_on,
         }
     }
 
@@ -98,9 +107,24 @@ impl<'a> Corridor<'a> {
         }
     }
 
+    /// Counts work that is done.
+    ///
+    /// # Errors
+    /// If it was stopped.
+    pub(super) fn count(&self, vertices: u64) -> Result<()> {
+        (self.go_on)(vertices)
+    }
+
+    /// Returns the number of vertices, by which work is counted.
+    pub(super) fn vertex_count(&self) -> usize {
+        self.surface.vertex_count()
+    }
+
     /// Returns where a segment ends that begins at a spot, if it stays in the corridor of a level
-    /// and meets no held edge before its end.
+    /// and meets no held edge before its end. None does once the work was stopped, so that lines
+    /// are soon done.
     pub(super) fn passes(&self, from: Spot, to: [f64; 2], level: f64) -> Option<At> {
+        self.count(0).ok()?;
         let mut largest = 0.0_f64;
         let divided = Divided(self.surface);
         let arrival = follow_linked(&divided, from.at, [from.point, to], |[_, _, z]| {

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::MapLine;
+use super::placing::{Distances, Place, placed};
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
 use crate::terrain::in_order::in_order;
 use crate::terrain::vertices_along;
@@ -12,7 +13,8 @@ use crate::terrain::vertices_along;
 pub struct LabelRules {
     /// The height of the text on the ground.
     pub height: f64,
-    /// The least distance between labels. It is at least one and a half times the longest text.
+    /// The least distance of a further label of a line from all others. It is at least one and a
+    /// half times the longest text, which the first labels of two lines keep from each other.
     pub spacing: f64,
     /// Where the tops of labels are.
     pub tops: LabelTops,
@@ -83,8 +85,11 @@ impl LabelRules {
 /// Returns labels for some of the lines, where they are straight: none overlaps another one, or a
 /// line other than its own.
 ///
-/// A label may be at the middle of each segment. It is placed if its line bends less than under all
-/// others within the spacing; if some bend as much, the one with the least coordinates is.
+/// A label may be at the middle of each segment where the line is straight under the text. Places
+/// where the line bends least come first, and those with the least coordinates if some bend as
+/// much. Each line gets its first label where the text is clear of those of other lines, before any
+/// line gets further ones, which keep the spacing from all. So a line stays without a label only if
+/// it has no straight place that is clear of the others.
 ///
 /// # Complexity
 /// Expected O(n log n) in the segments of all lines, on all threads; 48 bytes for each.
@@ -110,30 +115,25 @@ pub fn contour_labels(
         .iter()
         .map(|(_, line)| rules.length_of(line.line.level));
     let longest = lengths.fold(0.0, f64::max);
-    let candidates: Vec<Candidate> = wanted
+    let places: Vec<Place> = wanted
         .par_iter()
-        .flat_map_iter(|&(number, line)| candidates(number as u32, line, rules, &segments))
+        .flat_map_iter(|&(number, line)| places(number as u32, line, rules, &segments))
         .collect();
-    let spacing = rules.spacing.max(1.5 * longest);
-    let candidates = Boxes::new(candidates);
-    let is_best = |own: &&Candidate| {
-        let near = own.extent().grown(spacing);
-        let better = candidates.find_in(near, |other| {
-            let distance = (other.at[0] - own.at[0]).hypot(other.at[1] - own.at[1]);
-            (distance < spacing && other.rank() < own.rank()).then_some(())
-        });
-        better.is_none()
+    // Boxes of texts cannot meet at this distance.
+    let first = 1.5 * longest;
+    let least = Distances {
+        first,
+        further: rules.spacing.max(first),
     };
-    let mut best: Vec<&Candidate> = candidates.items().par_iter().filter(is_best).collect();
+    let mut best = placed(places, least);
     best.sort_by(|a, b| in_order(&(a.level, a.at), &(b.level, b.at)));
-    best.dedup_by_key(|candidate| candidate.at);
-    let label = |candidate: &Candidate| ContourLabel {
-        at: candidate.at,
-        level: candidate.level,
-        rotation: rotation(candidate.along, rules.tops),
-        size: [rules.length_of(candidate.level), rules.height],
+    let label = |place: &Place| ContourLabel {
+        at: place.at,
+        level: place.level,
+        rotation: rotation(place.along, rules.tops),
+        size: [rules.length_of(place.level), rules.height],
     };
-    best.into_iter().map(label).collect()
+    best.iter().map(label).collect()
 }
 
 /// Returns the direction of a text on a line with this direction, which has the higher ground on
@@ -163,36 +163,13 @@ impl Boxed for Side {
     }
 }
 
-/// A place for a label.
-#[derive(Debug, Clone, Copy)]
-struct Candidate {
-    at: [f64; 2],
-    /// The direction of the line.
-    along: [f64; 2],
-    level: f64,
-    /// How far the line is from the chord under the text.
-    bend: f64,
-}
-
-impl Candidate {
-    fn rank(&self) -> (f64, [f64; 2]) {
-        (self.bend, self.at)
-    }
-}
-
-impl Boxed for Candidate {
-    fn extent(&self) -> Extent {
-        Extent::of_plan([self.at])
-    }
-}
-
-/// Returns the labels that a line may have.
-fn candidates(
+/// Returns the places on a line at which a label may be.
+fn places(
     number: u32,
     MapLine { line, .. }: &MapLine,
     rules: &LabelRules,
     segments: &Boxes<Side>,
-) -> Vec<Candidate> {
+) -> Vec<Place> {
     let length = rules.length_of(line.level);
     let mut points = line.points.clone();
     let once = points.len().saturating_sub(1);
@@ -210,10 +187,10 @@ fn candidates(
         }
         let [start, end] = [middle - 0.5 * length, middle + 0.5 * length];
         let fits = start >= 0.0 && end <= along[along.len() - 1] && length <= whole;
-        let candidate = fits
-            .then(|| candidate_at(&points, &along, [start, end], rules))
+        let place = fits
+            .then(|| place_at(&points, &along, [start, end], rules))
             .flatten();
-        let Some((at, direction, bend)) = candidate else {
+        let Some((at, direction, bend)) = place else {
             continue;
         };
         let half = [0.5 * length, HALF_HEIGHT * rules.height];
@@ -226,7 +203,8 @@ fn candidates(
             })
             .is_none();
         if is_free {
-            found.push(Candidate {
+            found.push(Place {
+                line: number,
                 at,
                 along: direction,
                 level: line.level,
@@ -239,7 +217,7 @@ fn candidates(
 
 /// Returns the middle of the chord between two distances along a line, its direction, and how far
 /// the line is from it; `None` if it is too far.
-fn candidate_at(
+fn place_at(
     points: &[[f64; 2]],
     along: &[f64],
     [start, end]: [f64; 2],

@@ -32,6 +32,7 @@ mod labels;
 mod lattice;
 mod nests;
 mod passes;
+mod placing;
 mod regions;
 mod relax;
 mod reshaped;
@@ -114,17 +115,50 @@ pub fn map_contours(
     levels: &Levels,
     rules: &MapRules,
 ) -> Result<MapContours> {
+    map_contours_while(surface, levels, rules, &|_| Ok(()))
+}
+
+/// Is called again and again while work is done, from many threads, with the work since the last
+/// call: in vertices, each of which counts [a few times](map_work). The work ends with the error
+/// that it returns.
+pub type GoOn<'a> = &'a (dyn Fn(u64) -> Result<()> + Sync);
+
+/// Returns the work that [`map_contours_while`] counts at most.
+pub fn map_work(surface: &dyn Surface, rules: &MapRules) -> u64 {
+    let times = match (rules.smooth, rules.simplify) {
+        (Some(_), _) => tube::PASSES as u64 + 2,
+        (None, Some(_)) => 2,
+        (None, None) => 0,
+    };
+    times * surface.vertex_count() as u64
+}
+
+/// Returns what [`map_contours`] does, and can be stopped.
+///
+/// # Errors
+/// Those of [`map_contours`], and the one of `go_on`, which is called a few times a second at
+/// least, unless bands are triangulated.
+///
+/// # Complexity
+/// That of [`map_contours`].
+pub fn map_contours_while(
+    surface: &dyn Surface,
+    levels: &Levels,
+    rules: &MapRules,
+    go_on: GoOn,
+) -> Result<MapContours> {
     rules.check(levels)?;
-    if rules.is_plain() {
-        return exact(surface, levels, rules);
+    if rules.keeps_exact() {
+        let lines = contours(surface, levels)?.collect();
+        return map_of_contours(surface, lines, levels, rules);
     }
     let bounds = bounds_of_faces(surface);
     let [lowest, highest] = [bounds.min[2], bounds.max[2]];
-    let scale = Scale::of(rules, levels, &bounds, surface.vertex_count());
+    let scale = Scale::of(rules, levels, &bounds);
     let margin = scale.interval;
     let index = LevelIndex::new(levels.within(lowest - margin, highest + margin)?);
     let mut heights = match rules.smooth {
-        Some(_) => smoothed(surface, scale.tube),
+        Some(_) => smoothed(surface, scale.tube, go_on)?,
         None => (0..surface.vertex_count() as u32)
             .map(|vertex| surface.position(vertex)[2])
             .collect(),
@@ -133,17 +167,20 @@ pub fn map_contours(
     let smooth = Reshaped { surface, heights };
     let lines: Vec<ContourLine> = contours(&smooth as &dyn Surface, levels)?.collect();
     let traced: Vec<Traced> = lines.par_iter().map(Traced::of).collect();
-    let corridor = Corridor::new(&smooth, &index, scale.corridor);
+    let corridor = Corridor::new(&smooth, &index, scale.corridor, go_on);
     let locator = Locator::new(&smooth)?;
     let regions = Regions::of(&smooth, &index);
     let lines: Vec<Tracked> = lines
         .into_par_iter()
-        .map(|line| Tracked {
-            level: index.first_from(line.level),
-            at: corridor.spots(&locator, &line.points),
-            points: line.points,
+        .map(|line| {
+            go_on(0)?;
+            Ok(Tracked {
+                level: index.first_from(line.level),
+                at: corridor.spots(&locator, &line.points),
+                points: line.points,
+            })
         })
-        .collect();
+        .collect::<Result<_>>()?;
     let sides = lines
         .par_iter()
         .map(|line| sides_of(line, &smooth, &locator, &regions));
@@ -172,7 +209,7 @@ pub fn map_contours(
     drop(lines);
     if rules.smooth.is_some() || rules.simplify.is_some() {
         for pass in passes(rules, &scale) {
-            drawn = pass.run(drawn, index.levels(), &corridor, &locator);
+            drawn = pass.run(drawn, index.levels(), &corridor, &locator)?;
         }
     }
     let mut lengths = vec![f64::INFINITY; traced.len()];
@@ -212,17 +249,28 @@ pub fn map_contours(
     };
     Ok(MapContours {
         traced: traced.len(),
-        deviation: deviation(surface, &found)?,
+        deviation: deviation(surface, &found, go_on)?,
         lines: found,
         bands,
     })
 }
 
-/// Returns contours as they are.
-fn exact(surface: &dyn Surface, levels: &Levels, rules: &MapRules) -> Result<MapContours> {
-    let lines =
-        contours(surface, levels)?.map(|line| finished(&Traced::of(&line), levels, line.points));
-    let lines: Vec<MapLine> = lines.collect();
+/// Returns exact contours of a surface, which are drawn already, as those of a map that
+/// [keeps](MapRules::keeps_exact) them: sorted as [`contours`] sorts them.
+///
+/// # Errors
+/// Those of [`contour_bands`], if bands are asked for.
+///
+/// # Complexity
+/// Linear, besides that of [`contour_bands`].
+pub fn map_of_contours(
+    surface: &dyn Surface,
+    lines: Vec<ContourLine>,
+    levels: &Levels,
+    rules: &MapRules,
+) -> Result<MapContours> {
+    let finish = |line: ContourLine| finished(&Traced::of(&line), levels, line.points);
+    let lines: Vec<MapLine> = lines.into_iter().map(finish).collect();
     let bands = match rules.with_bands {
         true => bands_between(surface, levels, lines.iter().map(|line| &line.line))?,
         false => Vec::new(),
@@ -333,9 +381,10 @@ fn finished(traced: &Traced, levels: &Levels, mut points: Vec<[f64; 2]>) -> MapL
 
 /// Returns the largest difference between the heights of lines and a surface along them. Parts that
 /// rounding moves beyond the rim do not count.
-fn deviation(surface: &dyn Surface, lines: &[MapLine]) -> Result<f64> {
+fn deviation(surface: &dyn Surface, lines: &[MapLine], go_on: GoOn) -> Result<f64> {
     let locator = Locator::new(surface)?;
     let of_line = |MapLine { line, .. }: &MapLine| {
+        go_on(0)?;
         let stretches = locator.along(&line.points)?;
         let points = stretches.iter().flat_map(|stretch| stretch.iter());
         Ok(points.fold(0.0, |most: f64, p| most.max((p.at[2] - line.level).abs())))

@@ -100,18 +100,14 @@ impl<'a> Regions<'a> {
         for (face, vertices) in corners(surface) {
             for i in 0..3 {
                 let other = surface.neighbor(face, i).filter(|&other| other > face);
-                let Some((other, corners)) = other.and_then(|f| Some((f, surface.face(f)?))) else {
+                // By corners: a vertex that two parts share has a number in each of them.
+                let Some(across) = other.and_then(|_| surface.across(face, i)) else {
                     continue;
                 };
-                let ends = [1, 2].map(|k| vertices[(i + k) % 3]);
-                let apexes =
-                    [vertices, corners].map(|of| of.into_iter().find(|v| !ends.contains(v)));
-                let [Some(own), Some(its)] = apexes else {
-                    continue;
-                };
-                let height = |v: u32| surface.position(v)[2];
-                let ends = ends.map(height);
-                let [own, its] = [own, its].map(|apex| beside(self.index, ends, height(apex)));
+                let other = across.number;
+                let [ends @ .., own] =
+                    [1, 2, 0].map(|k| surface.position(vertices[(i + k) % 3])[2]);
+                let [own, its] = [own, across.apex[2]].map(|apex| beside(self.index, ends, apex));
                 for band in own.start.max(its.start)..own.end.min(its.end) {
                     if let (Some(a), Some(b)) = (self.part(face, band), self.part(other, band)) {
                         self.join(a, b);

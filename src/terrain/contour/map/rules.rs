@@ -58,8 +58,8 @@ impl MapRules {
         }
     }
 
-    /// Returns true if contours stay as they are.
-    pub(super) fn is_plain(&self) -> bool {
+    /// Returns true if contours stay as they are: none is moved or left out.
+    pub fn keeps_exact(&self) -> bool {
         let changes = self.smooth.is_some() || self.simplify.is_some();
         !changes && self.min_area <= 0.0 && self.min_length <= 0.0
     }
@@ -118,9 +118,6 @@ impl MapRules {
 /// The radius of the smoothing of heights, in intervals.
 const RADIUS: f64 = 8.0;
 
-/// That radius at most, in mean distances of vertices: the time grows with its square.
-const LARGEST_RADIUS: f64 = 10.0;
-
 /// The largest move of a point in a pass, in intervals.
 const LARGEST_MOVE: f64 = 1.5;
 
@@ -151,13 +148,8 @@ const SHARE: f64 = 0.2;
 const ROUNDING: f64 = 1e-6;
 
 impl Scale {
-    /// Returns what rules and levels ask for on a surface within bounds that has some vertices.
-    pub(super) fn of(
-        rules: &MapRules,
-        levels: &Levels,
-        bounds: &Bounds,
-        vertex_count: usize,
-    ) -> Self {
+    /// Returns what rules and levels ask for on a surface within bounds.
+    pub(super) fn of(rules: &MapRules, levels: &Levels, bounds: &Bounds) -> Self {
         let interval = levels.interval();
         let whole = rules.smooth.unwrap_or(0.5 * interval);
         let delta = (1e-4 * interval).min(whole / 8.0);
@@ -167,15 +159,14 @@ impl Scale {
             None => usable,
         };
         let [width, depth] = [0, 1].map(|axis| bounds.max[axis] - bounds.min[axis]);
-        // If vertices fill the box.
-        let spacing = (width * depth / vertex_count as f64).sqrt();
         let radius = RADIUS * interval;
         Scale {
             interval,
             delta,
             corridor,
             tube: Tube {
-                radius: radius.min(LARGEST_RADIUS * spacing),
+                radius,
+                area: width * depth,
                 largest: rules.smooth.map_or(0.0, |_| usable - corridor),
             },
             relaxing: Relaxing {

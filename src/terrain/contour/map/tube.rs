@@ -1,14 +1,17 @@
 //! Heights smoothed inside a tube around those of the surface.
 
+use std::cmp::Ordering;
 use std::sync::{Mutex, PoisonError};
 
 use rayon::prelude::*;
 
+use super::GoOn;
 use super::fit::Fit;
 use crate::data::{Surface, corners};
+use crate::error::Result;
 
 /// How often all heights are smoothed.
-const PASSES: usize = 4;
+pub(super) const PASSES: usize = 4;
 
 /// The least number of vertices for a fit.
 const LEAST_COUNT: usize = 8;
@@ -18,50 +21,66 @@ const LEAST_COUNT: usize = 8;
 const LARGEST_ECCENTRICITY: f64 = 0.25;
 
 /// The vertices that a thread takes at a time.
-const BATCH: usize = 1 << 10;
+const BATCH: usize = 1 << 8;
 
 /// No vertex.
 const NONE: u32 = u32::MAX;
 
+/// The largest radius, in mean distances of vertices: the time grows with its square.
+const LARGEST_RADIUS: f64 = 10.0;
+
 /// How far heights are smoothed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Tube {
-    /// The radius around each vertex, in plan.
+    /// The radius around each vertex, in plan; less where vertices are near to each other.
     pub(super) radius: f64,
+    /// The area of the box around the surface.
+    pub(super) area: f64,
     /// The largest change of a height.
     pub(super) largest: f64,
 }
 
 /// Returns smoothed heights for all vertices of a surface; held vertices keep theirs.
 ///
-/// Each height becomes that of a quadric at the vertex, fitted to the vertices within the radius
+/// Vertices at one position are one, as those are that the parts of a surface share. Each height
+/// becomes that of a quadric at the vertex, fitted to the vertices within the radius
 /// that edges lead to, but not through held vertices; then it is cut to the tube. All are smoothed
 /// at once, four times. Sums are made in the order of coordinates, so that they depend on the
 /// surface alone.
 ///
+/// # Errors
+/// That of `go_on`, which counts each vertex once in each pass.
+///
 /// # Complexity
 /// Proportional to the vertices, times those within the radius of each, on all threads. About 80
 /// bytes for each vertex, of which 8 remain.
-pub(super) fn smoothed(surface: &dyn Surface, tube: Tube) -> Vec<f64> {
-    let vertices = Vertices::of(surface);
+pub(super) fn smoothed(surface: &dyn Surface, tube: Tube, go_on: GoOn) -> Result<Vec<f64>> {
+    let (vertices, ranks) = Vertices::of(surface);
+    // If vertices fill the box.
+    let spacing = (tube.area / vertices.positions.len() as f64).sqrt();
+    let tube = Tube {
+        radius: tube.radius.min(LARGEST_RADIUS * spacing),
+        ..tube
+    };
     let original: Vec<f64> = vertices.positions.iter().map(|p| p[2]).collect();
     let mut heights = original.clone();
     for _ in 0..PASSES {
-        heights = vertices.smooth(&heights, &original, tube);
+        heights = vertices.smooth(&heights, &original, tube, go_on)?;
     }
-    let mut all: Vec<f64> = (0..surface.vertex_count() as u32)
-        .map(|vertex| surface.position(vertex)[2])
-        .collect();
-    for (&number, height) in vertices.numbers.iter().zip(heights) {
-        all[number as usize] = height;
-    }
-    all
+    let height = |(vertex, &rank): (u32, &u32)| {
+        let smoothed = heights.get(rank as usize).copied();
+        smoothed.unwrap_or_else(|| surface.position(vertex)[2])
+    };
+    Ok((0..).zip(&ranks).map(height).collect())
+}
+
+fn by_position(a: &[f64; 3], b: &[f64; 3]) -> Ordering {
+    let by_axis = (0..3).map(|axis| a[axis].total_cmp(&b[axis]));
+    by_axis.fold(Ordering::Equal, Ordering::then)
 }
 
 /// The vertices that have faces, in the order of their coordinates, and the edges between them.
 struct Vertices {
-    /// The number of each in the surface.
-    numbers: Vec<u32>,
     positions: Vec<[f64; 3]>,
     is_held: Vec<bool>,
     /// Where the neighbors of each vertex start, and where the last ones end.
@@ -70,7 +89,8 @@ struct Vertices {
 }
 
 impl Vertices {
-    fn of(surface: &dyn Surface) -> Self {
+    /// Also returns the position in this order of each vertex of the surface.
+    fn of(surface: &dyn Surface) -> (Self, Vec<u32>) {
         let mut ranks = vec![NONE; surface.vertex_count()];
         for (_, vertices) in corners(surface) {
             for v in vertices {
@@ -79,17 +99,19 @@ impl Vertices {
         }
         let used = (0..surface.vertex_count() as u32).filter(|&v| ranks[v as usize] == 0);
         let mut sorted: Vec<([f64; 3], u32)> = used.map(|v| (surface.position(v), v)).collect();
-        sorted.par_sort_unstable_by(|(a, v), (b, w)| {
-            let by_axis = (0..3).map(|axis| a[axis].total_cmp(&b[axis]));
-            by_axis
-                .fold(std::cmp::Ordering::Equal, std::cmp::Ordering::then)
-                .then(v.cmp(w))
-        });
-        for (rank, (_, vertex)) in sorted.iter().enumerate() {
-            ranks[*vertex as usize] = rank as u32;
+        sorted.par_sort_unstable_by(|(a, v), (b, w)| by_position(a, b).then(v.cmp(w)));
+        let mut positions: Vec<[f64; 3]> = Vec::with_capacity(sorted.len());
+        for (position, vertex) in sorted {
+            if positions
+                .last()
+                .is_none_or(|last| by_position(last, &position).is_ne())
+            {
+                positions.push(position);
+            }
+            ranks[vertex as usize] = positions.len() as u32 - 1;
         }
-        let mut is_held = vec![false; sorted.len()];
-        let mut starts = vec![0; sorted.len() + 1];
+        let mut is_held = vec![false; positions.len()];
+        let mut starts = vec![0; positions.len() + 1];
         // Each edge between two faces is seen in both directions, one at the rim in one.
         let each_edge = |take: &mut dyn FnMut(u32, u32)| {
             for (face, vertices) in corners(surface) {
@@ -122,24 +144,30 @@ impl Vertices {
                 }
             }
         }
-        let (positions, numbers) = sorted.into_iter().unzip();
-        Vertices {
-            numbers,
+        let vertices = Vertices {
             positions,
             is_held,
             starts,
             neighbors,
-        }
+        };
+        (vertices, ranks)
     }
 
     /// Returns the heights after one pass.
-    fn smooth(&self, heights: &[f64], original: &[f64], tube: Tube) -> Vec<f64> {
+    fn smooth(
+        &self,
+        heights: &[f64],
+        original: &[f64],
+        tube: Tube,
+        go_on: GoOn,
+    ) -> Result<Vec<f64>> {
         let mut after = heights.to_vec();
         // One for each thread, and not for each part into which the batches are split.
         let unused: Mutex<Vec<Around>> = Mutex::default();
         let lock = || unused.lock().unwrap_or_else(PoisonError::into_inner);
         let batches = after.par_chunks_mut(BATCH).enumerate();
-        batches.for_each(|(batch, after)| {
+        let done: Result<()> = batches.try_for_each(|(batch, after)| {
+            go_on(after.len() as u64)?;
             let taken = lock().pop();
             let mut around = taken.unwrap_or_else(|| Around::new(self.positions.len()));
             for (i, height) in after.iter_mut().enumerate() {
@@ -153,8 +181,9 @@ impl Vertices {
                 }
             }
             lock().push(around);
+            Ok(())
         });
-        after
+        done.map(|()| after)
     }
 
     /// Returns the height at a vertex by a fit; `None` if too little is known around it.
