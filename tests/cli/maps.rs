@@ -120,6 +120,60 @@ fn bands_are_polygons_with_both_heights() {
 }
 
 #[test]
+fn some_formats_take_labels_with_the_lines() {
+    let folder = folder_with(&[("hills.xyz", &hills())]);
+    let words = |name: &'static str, labels: &'static str| {
+        let own = ["contour", "hills.xyz", "--preset", "cartographic", "-o"];
+        [&own[..], &[name, "--labels-output", labels]].concat()
+    };
+    run_in(&folder, &words("m.dxf", "./m.dxf")).works(&["labels      ", "written     m.dxf"]);
+    run_in(&folder, &words("m.geojson", "l.geojson")).works(&["labels      "]);
+    let drawing = String::from_utf8(bytes(&folder, "m.dxf")).unwrap();
+    let pairs: Vec<&str> = drawing.lines().collect();
+    let count = |of: [&str; 2]| {
+        let is_begun = |pairs: &&[&str]| **pairs == ["0", of[0], "8", of[1]];
+        pairs.windows(4).filter(is_begun).count()
+    };
+    let [lines, labels] = ["m.geojson", "l.geojson"].map(|name| features(&bytes(&folder, name)));
+    let is_index = |line: &&Value| line["properties"]["INDEX"] == 1;
+    let index = lines.iter().filter(is_index).count();
+    assert_eq!(count(["POLYLINE", "CONTOURS_INDEX"]), index);
+    assert_eq!(count(["POLYLINE", "CONTOURS"]), lines.len() - index);
+    assert_eq!(count(["TEXT", "CONTOUR_LABELS"]), labels.len());
+    assert!(!labels.is_empty() && index > 0);
+    let has_records = |layer: &str, count: usize| {
+        let said = run_in(&folder, &["info", layer]).stdout;
+        assert!(
+            said.contains(&format!("count      {count} records")),
+            "{said}"
+        );
+    };
+    has_records("m.dxf", lines.len());
+    if cfg!(feature = "gpkg") {
+        run_in(&folder, &words("m.gpkg", "m.gpkg")).works(&["written     m.gpkg"]);
+        has_records("m.gpkg:m", lines.len());
+        has_records("m.gpkg:m_labels", labels.len());
+    }
+    run_in(&folder, &words("m.shp", "m.shp")).fails(2, &["the output is named twice"]);
+}
+
+#[test]
+fn lines_in_the_plane_have_no_heights() {
+    let folder = folder_with(&[("hills.xyz", &hills())]);
+    let words = ["contour", "hills.xyz", "-o", "c.geojson", "--overwrite"];
+    for (more, axes) in [(&[][..], 3), (&["--2d"], 2), (&["--2d", "--smooth"], 2)] {
+        run_in(&folder, &[&words[..], more].concat()).works(&["contours "]);
+        let lines = features(&bytes(&folder, "c.geojson"));
+        assert!(!lines.is_empty());
+        for line in lines {
+            let first = line["geometry"]["coordinates"][0].as_array().unwrap();
+            assert_eq!(first.len(), axes, "{more:?}");
+            assert!(line["properties"]["ELEV"].is_number());
+        }
+    }
+}
+
+#[test]
 fn what_cannot_be_is_refused_with_a_cure() {
     let folder = folder_with(&[
         ("hills.xyz", &hills()),

@@ -5,6 +5,7 @@ mod map;
 mod map_judge;
 mod raster;
 mod real;
+mod real_maps;
 mod several_levels;
 mod surface;
 

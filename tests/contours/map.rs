@@ -1,6 +1,8 @@
 //! Contours for maps: on surfaces where heights are often equal to levels, and on random ones.
 
-use super::map_judge::{check_crossings, check_polygon, deviation, doubled_area, is_inside, meet};
+use super::map_judge::{
+    Ground, box_of, boxes_meet, check_crossings, check_polygon, doubled_area, is_inside, meet,
+};
 use breakline::data::{ContourLine, Mesh, Surface};
 use breakline::error::Error;
 use breakline::terrain::{
@@ -131,9 +133,10 @@ fn check(case: &Case, rules: &MapRules, largest: f64) -> usize {
     let found = map_contours(&tin, &levels(case), rules).unwrap();
     let lines = lines_of(&found);
     check_crossings(&lines);
+    let ground = Ground::new(&tin);
     let mut most = 0.0_f64;
     for line in &lines {
-        most = most.max(deviation(&tin, line));
+        most = most.max(ground.deviation(line));
     }
     assert!(
         most <= largest,
@@ -438,26 +441,6 @@ fn bands_without_small_lines_cover_the_surface() {
     });
 }
 
-/// The corners of the box of a label.
-fn box_of(label: &ContourLabel) -> [[f64; 2]; 5] {
-    let (sin, cos) = label.rotation.to_radians().sin_cos();
-    let [length, height] = label.size;
-    [
-        [-1.0, -1.0],
-        [1.0, -1.0],
-        [1.0, 1.0],
-        [-1.0, 1.0],
-        [-1.0, -1.0],
-    ]
-    .map(|[u, v]| {
-        let [u, v] = [0.499 * length * u, 0.499 * height * v];
-        [
-            label.at[0] + u * cos - v * sin,
-            label.at[1] + u * sin + v * cos,
-        ]
-    })
-}
-
 #[test]
 fn labels_overlap_nothing_and_stand_upright() {
     let mut count = 0;
@@ -484,13 +467,7 @@ fn labels_overlap_nothing_and_stand_upright() {
             let difference = (turned[i].rotation - label.rotation).rem_euclid(360.0);
             assert!(difference == 0.0 || (difference - 180.0).abs() < 1e-9);
             let own = box_of(label);
-            for other in &labels[..i] {
-                for side in own.windows(2) {
-                    for beyond in box_of(other).windows(2) {
-                        assert!(!meet([side[0], side[1]], [beyond[0], beyond[1]]));
-                    }
-                }
-            }
+            assert!(!labels[..i].iter().any(|other| boxes_meet(label, other)));
             let near = found
                 .lines
                 .iter()

@@ -1,7 +1,10 @@
 //! A judge of contours for maps: all pairs of segments, and all segments with all triangles, in
 //! exact arithmetic.
 
+use std::collections::HashMap;
+
 use breakline::data::{ContourLine, Surface};
+use breakline::terrain::ContourLabel;
 use dashu_ratio::RBig;
 
 type Point = [f64; 2];
@@ -85,27 +88,94 @@ pub(crate) fn check_crossings(lines: &[ContourLine]) {
     }
 }
 
-/// Returns the largest difference between the height of a line and the surface along it, exact but
-/// for a last rounding. The line may lie beyond the rim.
-pub(crate) fn deviation(surface: &dyn Surface, line: &ContourLine) -> f64 {
-    let triangles: Vec<[[f64; 3]; 3]> = (0..surface.face_count() as u32)
-        .filter_map(|face| surface.triangle(face))
-        .collect();
-    let mut largest = exact(0.0);
-    let mut known = 0.0;
-    for ends in line.points.windows(2) {
-        for triangle in &triangles {
-            let corners = triangle.map(|p| [p[0], p[1]]);
-            let off = triangle.map(|p| (p[2] - line.level).abs());
-            let may_be_larger = off.into_iter().fold(0.0, f64::max) > known;
-            if may_be_larger && !are_apart(ends, &corners) {
-                let off = deviation_in(triangle, ends, line.level);
-                largest = off.filter(|off| *off > largest).unwrap_or(largest);
-                known = largest.to_f64().value().next_down();
+/// All triangles of a surface, by the squares of a lattice that their boxes meet.
+pub(crate) struct Ground {
+    triangles: Vec<[[f64; 3]; 3]>,
+    squares: HashMap<[i64; 2], Vec<usize>>,
+    side: f64,
+}
+
+impl Ground {
+    pub(crate) fn new(surface: &dyn Surface) -> Self {
+        let triangles: Vec<[[f64; 3]; 3]> = (0..surface.face_count() as u32)
+            .filter_map(|face| surface.triangle(face))
+            .collect();
+        let width = |t: &[[f64; 3]; 3]| (t[0][0] - t[1][0]).abs() + (t[0][0] - t[2][0]).abs();
+        let side = 2.0 * triangles.iter().map(width).sum::<f64>() / triangles.len() as f64;
+        let mut ground = Ground {
+            triangles,
+            squares: HashMap::new(),
+            side,
+        };
+        for (number, triangle) in ground.triangles.iter().enumerate() {
+            for square in ground.squares_of(&triangle.map(|p| [p[0], p[1]])) {
+                ground.squares.entry(square).or_default().push(number);
             }
         }
+        ground
     }
-    largest.to_f64().value()
+
+    fn squares_of(&self, points: &[Point]) -> Vec<[i64; 2]> {
+        let [columns, rows] = [0, 1].map(|axis| {
+            let numbers = points.iter().map(|p| (p[axis] / self.side).floor() as i64);
+            let [least, most] = [numbers.clone().min(), numbers.max()].map(Option::unwrap);
+            least..=most
+        });
+        let column = |x: i64| rows.clone().map(move |y| [x, y]);
+        columns.flat_map(column).collect()
+    }
+
+    /// Returns the largest difference between the height of a line and the surface along it, exact
+    /// but for a last rounding. The line may lie beyond the rim.
+    pub(crate) fn deviation(&self, line: &ContourLine) -> f64 {
+        let mut largest = exact(0.0);
+        let mut known = 0.0;
+        for ends in line.points.windows(2) {
+            let squares = self.squares_of(ends);
+            let near = squares.iter().filter_map(|square| self.squares.get(square));
+            for &number in near.flatten() {
+                let triangle = &self.triangles[number];
+                let corners = triangle.map(|p| [p[0], p[1]]);
+                let off = triangle.map(|p| (p[2] - line.level).abs());
+                let may_be_larger = off.into_iter().fold(0.0, f64::max) > known;
+                if may_be_larger && !are_apart(ends, &corners) {
+                    let off = deviation_in(triangle, ends, line.level);
+                    largest = off.filter(|off| *off > largest).unwrap_or(largest);
+                    known = largest.to_f64().value().next_down();
+                }
+            }
+        }
+        largest.to_f64().value()
+    }
+}
+
+/// The corners of the box of a label, with the first one at the end.
+pub(crate) fn box_of(label: &ContourLabel) -> [Point; 5] {
+    let (sin, cos) = label.rotation.to_radians().sin_cos();
+    let [length, height] = label.size;
+    [
+        [-1.0, -1.0],
+        [1.0, -1.0],
+        [1.0, 1.0],
+        [-1.0, 1.0],
+        [-1.0, -1.0],
+    ]
+    .map(|[u, v]| {
+        let [u, v] = [0.499 * length * u, 0.499 * height * v];
+        [
+            label.at[0] + u * cos - v * sin,
+            label.at[1] + u * sin + v * cos,
+        ]
+    })
+}
+
+/// Returns true if the boxes of two labels have borders that meet.
+pub(crate) fn boxes_meet(label: &ContourLabel, other: &ContourLabel) -> bool {
+    let (own, beyond) = (box_of(label), box_of(other));
+    own.windows(2).any(|side| {
+        let mut others = beyond.windows(2);
+        others.any(|other| meet([side[0], side[1]], [other[0], other[1]]))
+    })
 }
 
 /// Returns the largest difference of heights along the part of a segment that is in a triangle.

@@ -9,7 +9,7 @@ use testkit::shared;
 
 type Segment = [[f64; 2]; 2];
 
-fn tin(points: &[&str], breaklines: Option<&str>) -> Tin {
+pub(crate) fn tin(points: &[&str], breaklines: Option<&str>) -> Tin {
     let mut builder = TinBuilder::default();
     for path in points {
         let mut source = breakline::io::points::open(shared(path)).unwrap();

@@ -98,7 +98,7 @@ pub fn contour_map(
         };
         let finding = context.start(Stage::FindingContours, size)?;
         let polled = Watched::polled(faces, context)?;
-        // Progress is told less often than is asked whether to go on.
+        // Most calls only ask whether to go on.
         let go_on = |work| match work {
             0 => context.check(),
             _ => finding.add(work),

@@ -15,8 +15,8 @@ use crate::terrain::LabelTops;
 ///
 /// Contours are drawn exactly on the triangles (of a DEM: between the centers of its cells), joined
 /// to the longest possible lines, with higher ground on the right. The output is .shp (PolyLineZ
-/// with field ELEV), .gpkg, .geojson or .dxf. Points may need more memory than there is: then the work is
-/// done in tiles (--tiles, --memory).
+/// with field ELEV), .gpkg, .geojson or .dxf. Points may need more memory than there is: then the
+/// work is done in tiles (--tiles, --memory).
 ///
 /// For a map, lines are smoothed and simplified with a promise: none is off the surface by more
 /// than the tolerance, none crosses another line or itself, and each breakline is crossed where the
@@ -120,9 +120,9 @@ pub(crate) struct MapArgs {
 
     /// File for labels: points with ELEV and ROTATION
     ///
-    /// A GeoPackage or a DXF drawing can be that of the lines: it then has a second layer, or texts.
     /// On index lines, if any are marked, where they are straight; no label overlaps another one or
     /// another line. ROTATION is the direction of the text in degrees, counter-clockwise from east.
+    /// The file may be that of the lines: a GeoPackage has a second layer then, a drawing texts.
     #[arg(long, value_name = "FILE")]
     pub(crate) labels_output: Option<PathBuf>,
 

@@ -2,8 +2,8 @@
 
 use rustc_hash::FxHashMap;
 
-use super::GoOn;
 use super::reshaped::{Divided, is_held};
+use super::work::GoOn;
 use crate::data::{Surface, corners};
 use crate::error::Result;
 use crate::terrain::contour::crossing;

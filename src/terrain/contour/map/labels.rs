@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::MapLine;
-use super::placing::{Distances, Place, placed};
+use super::placing::{Candidate, Distances, chosen};
 use crate::terrain::boxes::{Boxed, Boxes, Extent};
 use crate::terrain::in_order::in_order;
 use crate::terrain::vertices_along;
@@ -115,9 +115,9 @@ pub fn contour_labels(
         .iter()
         .map(|(_, line)| rules.length_of(line.line.level));
     let longest = lengths.fold(0.0, f64::max);
-    let places: Vec<Place> = wanted
+    let candidates: Vec<Candidate> = wanted
         .par_iter()
-        .flat_map_iter(|&(number, line)| places(number as u32, line, rules, &segments))
+        .flat_map_iter(|&(number, line)| candidates(number as u32, line, rules, &segments))
         .collect();
     // Boxes of texts cannot meet at this distance.
     let first = 1.5 * longest;
@@ -125,13 +125,13 @@ pub fn contour_labels(
         first,
         further: rules.spacing.max(first),
     };
-    let mut best = placed(places, least);
+    let mut best = chosen(candidates, least);
     best.sort_by(|a, b| in_order(&(a.level, a.at), &(b.level, b.at)));
-    let label = |place: &Place| ContourLabel {
-        at: place.at,
-        level: place.level,
-        rotation: rotation(place.along, rules.tops),
-        size: [rules.length_of(place.level), rules.height],
+    let label = |candidate: &Candidate| ContourLabel {
+        at: candidate.at,
+        level: candidate.level,
+        rotation: rotation(candidate.along, rules.tops),
+        size: [rules.length_of(candidate.level), rules.height],
     };
     best.iter().map(label).collect()
 }
@@ -164,12 +164,12 @@ impl Boxed for Side {
 }
 
 /// Returns the places on a line at which a label may be.
-fn places(
+fn candidates(
     number: u32,
     MapLine { line, .. }: &MapLine,
     rules: &LabelRules,
     segments: &Boxes<Side>,
-) -> Vec<Place> {
+) -> Vec<Candidate> {
     let length = rules.length_of(line.level);
     let mut points = line.points.clone();
     let once = points.len().saturating_sub(1);
@@ -187,10 +187,10 @@ fn places(
         }
         let [start, end] = [middle - 0.5 * length, middle + 0.5 * length];
         let fits = start >= 0.0 && end <= along[along.len() - 1] && length <= whole;
-        let place = fits
-            .then(|| place_at(&points, &along, [start, end], rules))
+        let candidate = fits
+            .then(|| candidate_at(&points, &along, [start, end], rules))
             .flatten();
-        let Some((at, direction, bend)) = place else {
+        let Some((at, direction, bend)) = candidate else {
             continue;
         };
         let half = [0.5 * length, HALF_HEIGHT * rules.height];
@@ -203,7 +203,7 @@ fn places(
             })
             .is_none();
         if is_free {
-            found.push(Place {
+            found.push(Candidate {
                 line: number,
                 at,
                 along: direction,
@@ -217,7 +217,7 @@ fn places(
 
 /// Returns the middle of the chord between two distances along a line, its direction, and how far
 /// the line is from it; `None` if it is too far.
-fn place_at(
+fn candidate_at(
     points: &[[f64; 2]],
     along: &[f64],
     [start, end]: [f64; 2],

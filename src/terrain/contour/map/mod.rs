@@ -41,6 +41,7 @@ mod rules;
 mod strand;
 mod thin;
 mod tube;
+mod work;
 
 use rayon::prelude::*;
 
@@ -56,6 +57,7 @@ use self::reshaped::Reshaped;
 pub use self::rules::MapRules;
 use self::rules::Scale;
 use self::tube::{nudge, smoothed};
+pub use self::work::GoOn;
 use super::contours;
 use super::index::LevelIndex;
 use super::line::start_at_smallest;
@@ -117,11 +119,6 @@ pub fn map_contours(
 ) -> Result<MapContours> {
     map_contours_while(surface, levels, rules, &|_| Ok(()))
 }
-
-/// Is called again and again while work is done, from many threads, with the work since the last
-/// call: in vertices, each of which counts [a few times](map_work). The work ends with the error
-/// that it returns.
-pub type GoOn<'a> = &'a (dyn Fn(u64) -> Result<()> + Sync);
 
 /// Returns the work that [`map_contours_while`] counts at most.
 pub fn map_work(surface: &dyn Surface, rules: &MapRules) -> u64 {

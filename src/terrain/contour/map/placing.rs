@@ -5,7 +5,7 @@ use crate::terrain::in_order::in_order;
 
 /// A place for a label.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Place {
+pub(super) struct Candidate {
     /// The number of the line.
     pub(super) line: u32,
     /// The middle of the text.
@@ -35,23 +35,26 @@ pub(super) struct Distances {
 ///
 /// # Complexity
 /// Expected O(n log n), and the number of places around each label.
-pub(super) fn placed(mut places: Vec<Place>, least: Distances) -> Vec<Place> {
-    places.sort_by(|a, b| {
-        let rank = |place: &Place| (place.bend, place.at);
+pub(super) fn chosen(mut candidates: Vec<Candidate>, least: Distances) -> Vec<Candidate> {
+    candidates.sort_by(|a, b| {
+        let rank = |candidate: &Candidate| (candidate.bend, candidate.at);
         let by_line = || a.line.cmp(&b.line);
         in_order(&rank(a), &rank(b)).then_with(by_line)
     });
-    let sites = (0..).zip(&places);
+    let sites = (0..).zip(&candidates);
     let sites = Boxes::new(sites.map(|(number, p)| Site { number, at: p.at }).collect());
-    let lines = places.iter().map(|place| place.line as usize + 1).max();
+    let lines = candidates
+        .iter()
+        .map(|candidate| candidate.line as usize + 1)
+        .max();
     let mut has_label = vec![false; lines.unwrap_or(0)];
     // From each place to the label that is nearest, as far as it matters.
-    let mut distances = vec![f64::INFINITY; places.len()];
+    let mut distances = vec![f64::INFINITY; candidates.len()];
     let mut found = Vec::new();
     for is_first in [true, false] {
         let wanted = if is_first { least.first } else { least.further };
-        for (number, place) in places.iter().enumerate() {
-            let line = place.line as usize;
+        for (number, candidate) in candidates.iter().enumerate() {
+            let line = candidate.line as usize;
             let distance = distances[number];
             // Not where one is, even if no distance is wanted.
             let has_room = distance > 0.0 && distance >= wanted;
@@ -59,10 +62,10 @@ pub(super) fn placed(mut places: Vec<Place>, least: Distances) -> Vec<Place> {
                 continue;
             }
             has_label[line] = true;
-            found.push(*place);
-            let near = Extent::of_plan([place.at]).grown(least.further);
+            found.push(*candidate);
+            let near = Extent::of_plan([candidate.at]).grown(least.further);
             sites.find_in(near, |site| -> Option<()> {
-                let distance = (site.at[0] - place.at[0]).hypot(site.at[1] - place.at[1]);
+                let distance = (site.at[0] - candidate.at[0]).hypot(site.at[1] - candidate.at[1]);
                 let nearest = &mut distances[site.number as usize];
                 *nearest = nearest.min(distance);
                 None
@@ -91,11 +94,11 @@ mod tests {
     use testkit::random::Random;
 
     /// Places on a small grid of whole coordinates, with few different bends.
-    fn some(random: &mut Random) -> Vec<Place> {
+    fn some(random: &mut Random) -> Vec<Candidate> {
         let (side, lines) = (3 + random.index(12), 1 + random.below(9) as u32);
         let count = random.index(60);
-        let mut places: Vec<Place> = (0..count)
-            .map(|_| Place {
+        let mut candidates: Vec<Candidate> = (0..count)
+            .map(|_| Candidate {
                 line: random.below(u64::from(lines)) as u32,
                 at: [0, 1].map(|_| random.index(side) as f64),
                 along: [1.0, 0.0],
@@ -104,29 +107,32 @@ mod tests {
             })
             .collect();
         // Lines have no place twice.
-        places.sort_by(|a, b| in_order(&(a.at, a.bend), &(b.at, b.bend)));
-        places.dedup_by_key(|place| (place.at.map(f64::to_bits), place.line));
-        places
+        candidates.sort_by(|a, b| in_order(&(a.at, a.bend), &(b.at, b.bend)));
+        candidates.dedup_by_key(|candidate| (candidate.at.map(f64::to_bits), candidate.line));
+        candidates
     }
 
-    fn distance(a: &Place, b: &Place) -> f64 {
+    fn distance(a: &Candidate, b: &Candidate) -> f64 {
         (a.at[0] - b.at[0]).hypot(a.at[1] - b.at[1])
     }
 
     /// The same, by comparing all with all.
-    fn naive(places: &[Place], least: Distances) -> Vec<Place> {
-        let mut found: Vec<Place> = Vec::new();
+    fn naive(candidates: &[Candidate], least: Distances) -> Vec<Candidate> {
+        let mut found: Vec<Candidate> = Vec::new();
         for is_first in [true, false] {
             loop {
-                let may = |place: &&Place| {
+                let may = |candidate: &&Candidate| {
                     let wanted = if is_first { least.first } else { least.further };
-                    let is_free =
-                        |other: &Place| distance(place, other) >= wanted && other.at != place.at;
-                    let has_label = found.iter().any(|other| other.line == place.line);
+                    let is_free = |other: &Candidate| {
+                        distance(candidate, other) >= wanted && other.at != candidate.at
+                    };
+                    let has_label = found.iter().any(|other| other.line == candidate.line);
                     found.iter().all(is_free) && !(is_first && has_label)
                 };
-                let rank = |place: &Place| (place.bend, place.at, f64::from(place.line));
-                let best = places
+                let rank = |candidate: &Candidate| {
+                    (candidate.bend, candidate.at, f64::from(candidate.line))
+                };
+                let best = candidates
                     .iter()
                     .filter(may)
                     .min_by(|a, b| in_order(&rank(a), &rank(b)));
@@ -144,23 +150,24 @@ mod tests {
         let (mut bare, mut both) = (0, 0);
         for seed in 0..2000 {
             let mut random = Random(seed);
-            let mut places = some(&mut random);
+            let mut candidates = some(&mut random);
             let first = random.pick(&[0.0, 1.0, 2.0, 5.0]);
             let least = Distances {
                 first,
                 further: first * random.pick(&[1.0, 2.0, 4.0]),
             };
-            let found = placed(places.clone(), least);
-            assert_eq!(found, naive(&places, least), "seed {seed}");
-            random.shuffle(&mut places);
-            assert_eq!(found, placed(places.clone(), least), "seed {seed}");
+            let found = chosen(candidates.clone(), least);
+            assert_eq!(found, naive(&candidates, least), "seed {seed}");
+            random.shuffle(&mut candidates);
+            assert_eq!(found, chosen(candidates.clone(), least), "seed {seed}");
             for (i, one) in found.iter().enumerate() {
                 assert!(found[..i].iter().all(|other| distance(one, other) >= first));
             }
-            for place in &places {
-                let has_label = found.iter().any(|label| label.line == place.line);
-                let is_near =
-                    |label: &Place| label.at == place.at || distance(label, place) < first;
+            for candidate in &candidates {
+                let has_label = found.iter().any(|label| label.line == candidate.line);
+                let is_near = |label: &Candidate| {
+                    label.at == candidate.at || distance(label, candidate) < first
+                };
                 assert!(has_label || found.iter().any(is_near), "seed {seed}");
                 bare += usize::from(!has_label);
             }

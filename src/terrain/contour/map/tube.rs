@@ -5,8 +5,8 @@ use std::sync::{Mutex, PoisonError};
 
 use rayon::prelude::*;
 
-use super::GoOn;
 use super::fit::Fit;
+use super::work::GoOn;
 use crate::data::{Surface, corners};
 use crate::error::Result;
 
