@@ -67,7 +67,6 @@ pub enum ShapeKind {
 
 impl Shape {
     /// Returns the faces of a surface if all are triangles, else a polygon with the rings of all.
-    #[cfg(any(feature = "gdal", feature = "gpkg"))]
     pub(crate) fn of_faces(faces: Vec<Vec<Vec<[f64; 3]>>>) -> Self {
         let is_triangle =
             |face: &Vec<Vec<[f64; 3]>>| matches!(&face[..], [ring] if ring.len() == 4);
@@ -142,6 +141,9 @@ pub struct Layer {
     pub columns: Vec<Column>,
     /// All attributes, if they were requested and the reader keeps them.
     pub attributes: Option<Attributes>,
+    /// The numbers of the records that were chosen by a condition, counted from 1 as messages do;
+    /// `None` if all were.
+    pub chosen: Option<Vec<usize>>,
     /// Warnings for the user.
     pub warnings: Vec<Wording>,
 }
@@ -153,6 +155,24 @@ impl Layer {
         named(names, name).map(|at| &self.columns[at])
     }
 
+    /// Returns the number of a shape in the file, counted from 1, by its position in the layer.
+    pub fn record(&self, at: usize) -> usize {
+        let chosen = self.chosen.as_ref().and_then(|chosen| chosen.get(at));
+        chosen.copied().unwrap_or(at + 1)
+    }
+
+    /// Removes the shapes for which there is no true value, with their values.
+    pub(crate) fn keep(&mut self, held: &[bool]) {
+        let chosen = (0..self.shapes.len()).filter(|&at| held.get(at) == Some(&true));
+        self.chosen = Some(chosen.map(|at| self.record(at)).collect());
+        let columns = self.columns.iter_mut();
+        columns.for_each(|column| retain(&mut column.values, held));
+        retain(&mut self.shapes, held);
+        if let Some(attributes) = &mut self.attributes {
+            retain(&mut attributes.rows, held);
+        }
+    }
+
     /// Returns the parts of all lines and the rings of all polygons.
     pub fn lines(&self) -> impl Iterator<Item = &[[f64; 3]]> + '_ {
         self.shapes.iter().flat_map(|shape| match shape {
@@ -160,4 +180,10 @@ impl Layer {
             _ => [].iter().map(Vec::as_slice),
         })
     }
+}
+
+/// Removes the values for which there is no true value.
+fn retain<T>(values: &mut Vec<T>, held: &[bool]) {
+    let mut held = held.iter();
+    values.retain(|_| held.next() == Some(&true));
 }

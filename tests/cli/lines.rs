@@ -595,3 +595,67 @@ fn lakes_that_meet_have_the_height_of_the_largest() {
     ];
     run_in(&folder, &given).fails(1, &["two lakes meet at"]);
 }
+
+#[test]
+fn a_condition_chooses_the_records_of_the_layer_before_it() {
+    let line = |y: f64| format!("[[0.2,{y},9],[1.8,{y},9]]");
+    let lines = [line(0.5), line(0.8), line(1.3)];
+    let folder = folder(&[
+        ("LineString", &lines[0], r#"{"kind":"toe","width":2.5}"#),
+        ("LineString", &lines[1], r#"{"kind":"top","width":null}"#),
+        ("LineString", &lines[2], r#"{"kind":"Toe","width":4}"#),
+    ]);
+    let tin = |words: &[&str]| {
+        let all = [&["tin", "p.xyz", "-o", "t.ply", "--overwrite"], words].concat();
+        run_in(&folder, &all)
+    };
+    for (condition, count) in [
+        ("kind='toe'", 1),
+        ("kind ILIKE 'toe'", 2),
+        ("width IS NULL OR width > 3", 2),
+        ("NOT width > 3", 1),
+    ] {
+        let summary = format!("breaklines  {count} in");
+        tin(&["--breaklines", "l.geojson", "--where", condition]).works(&[&summary]);
+        let one_word = format!("l.geojson WHERE {condition}");
+        tin(&["--breaklines", &one_word]).works(&[&summary]);
+    }
+    // Each option has its own, also of the same file.
+    tin(&[
+        "--breaklines",
+        "l.geojson",
+        "--where",
+        "kind='toe'",
+        "--soft-lines=l.geojson",
+        "--where=kind='top'",
+    ])
+    .works(&["breaklines  1 in", "soft lines  1 in"]);
+    let of = |condition: &str| tin(&["--breaklines", "l.geojson", "--where", condition]);
+    of("kind = 'x'").works(&["none of 3 records is true for `kind = 'x'`"]);
+    of("knd = 'x'").fails(
+        2,
+        &[
+            "l.geojson",
+            "condition `knd = 'x'`",
+            "no field knd",
+            "is \"kind\" meant?",
+        ],
+    );
+    of("kind =").fails(2, &["character 7: expected an attribute or a value"]);
+    of("kind > 5").fails(1, &["l.geojson", "record 1", "'toe' and 5 has no order"]);
+    tin(&["--where", "kind = 'x'"]).fails(2, &["--where is not after a layer"]);
+    run_in(
+        &folder,
+        &["tin", "p.xyz", "--where", "class = 2", "-o", "t.ply"],
+    )
+    .fails(2, &["p.xyz", "--where chooses records of a layer"]);
+    // Records keep their numbers.
+    let flat = "[[0.2,0.5],[1.8,0.5]]";
+    let layer = features(&[
+        ("LineString", &lines[0], r#"{"kind":"top"}"#),
+        ("LineString", flat, r#"{"kind":"toe"}"#),
+    ]);
+    std::fs::write(folder.path().join("l.geojson"), layer).unwrap();
+    of("kind = 'toe'").fails(1, &["record 2", "no heights"]);
+    of("kind = 'top'").works(&["breaklines  1 in"]);
+}

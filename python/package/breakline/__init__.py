@@ -26,6 +26,7 @@ accuracy            :func:`accuracy`
 flaws               :meth:`Tin.check`, :func:`check`
 facts about a file  :func:`info`
 coordinate systems  :func:`crs`
+a layer of a file   :func:`layer`
 Triangle's files    :func:`triangulate`
 large data          ``output=`` of a verb, :class:`Job`
 ==================  ==================================================
@@ -53,6 +54,7 @@ from ._errors import (
     UnsupportedError,
     UsageError,
 )
+from ._layer import layer
 from ._points import points, read_points
 from ._profiles import Profile, drape, profile
 from ._quantities import aspect, curvature, roughness, slope, tpi, tri
@@ -127,6 +129,7 @@ __all__ = [
     "drape",
     "hillshade",
     "info",
+    "layer",
     "points",
     "profile",
     "read_points",

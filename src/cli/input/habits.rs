@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use clap::CommandFactory;
 
 use super::args::{Cli, expand_switches, finite};
+use super::condition;
 use crate::error::{Error, Result};
 use crate::io::formats::{self, Product};
 use crate::io::profiles;
@@ -39,13 +40,17 @@ enum Meaning {
     Format,
     /// A creation option of GeoTIFF, `NAME=VALUE`.
     Creation,
+    /// The condition for the records of the layer that was named just before.
+    Condition,
     /// What this program does anyway.
     Nothing,
     /// Not possible; the hint says what is.
     Refused(&'static str),
 }
 
-use Meaning::{Corners, Creation, Format, Input, List, Nothing, Refused, Same, Square, Words};
+use Meaning::{
+    Condition, Corners, Creation, Format, Input, List, Nothing, Refused, Same, Square, Words,
+};
 
 const RASTERS: &[&str] = &[
     "dem",
@@ -123,6 +128,7 @@ const HABITS: &[Habit] = &[
     Habit { typed: &["-keep_return"], verbs: OF_POINTS, meaning: List("--return") },
     Habit { typed: &["-keep_xy", "-inside"], verbs: OF_POINTS, meaning: Corners("--bounds") },
     Habit { typed: &["-lakes"], verbs: SURFACES, meaning: Same("--flat") },
+    Habit { typed: &["--where", "-where"], verbs: &[], meaning: Condition },
     Habit { typed: &["-creeks"], verbs: SURFACES, meaning: Same("--breaklines") },
     Habit { typed: &["-iso_every"], verbs: CONTOUR, meaning: Same("--interval") },
     Habit { typed: &["-iso_value"], verbs: CONTOUR, meaning: List("--levels") },
@@ -374,6 +380,10 @@ impl Translation<'_> {
                         .extend(["--overviews", "none"].map(OsString::from)),
                     false => require_as_written(name, &value)?,
                 }
+            }
+            Condition => {
+                let condition = self.value();
+                condition::add(name, &condition, self.verb, &mut self.ours)?;
             }
             Nothing => {}
             Refused(cure) => {

@@ -24,11 +24,13 @@ pub(crate) fn expand(typed: &[PathBuf], console: &Console) -> Result<Vec<PathBuf
     }
     let mut seen = HashSet::new();
     found.retain(|path| {
-        // The layers of a file are inputs of their own.
-        let layer = path
-            .to_str()
-            .and_then(|text| Some(Spec::parse(text).ok()?.layer_of_several()?.to_owned()));
-        let is_new = seen.insert((identity(path), layer));
+        // The layers of a file are inputs of their own, and so are records that differ.
+        let spec = path.to_str().and_then(|text| Spec::parse(text).ok());
+        let part = spec.map(|spec| {
+            let layer = spec.layer_of_several().map(str::to_owned);
+            (layer, spec.condition.map(|chosen| chosen.text().to_owned()))
+        });
+        let is_new = seen.insert((identity(path), part));
         if !is_new {
             console.note(format_args!(
                 "{} is named twice and used once",

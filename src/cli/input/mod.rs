@@ -3,6 +3,7 @@
 //! The options as typed (`args`) are kept apart from their meaning (`plan`, `inputs`, `outputs`).
 
 pub(super) mod args;
+mod condition;
 pub(super) mod habits;
 pub(super) mod inputs;
 pub(super) mod outputs;

@@ -8,10 +8,12 @@ use crate::io::bytes::output::Destination;
 use crate::io::bytes::watch::{Watch, unwatched};
 use crate::io::codec::gpkg;
 use crate::io::formats::{self, FormatReader, Product, Writers};
+pub use crate::io::options::condition::{BoundCondition, Condition};
 use crate::io::options::cut::OnDamage;
 pub use crate::io::options::layer::Options;
 
-/// A vector layer as a user names it: a file, and the layer and the attribute to read of it.
+/// A vector layer as a user names it: a file, the layer and the attribute to read of it, and which
+/// records.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Spec {
     /// The file, or the folder of a file geodatabase.
@@ -20,6 +22,8 @@ pub struct Spec {
     pub layer: Option<String>,
     /// The attribute that contains the heights; without one, they come from the geometry.
     pub field: Option<String>,
+    /// Which records are read; `None` for all.
+    pub condition: Option<Condition>,
 }
 
 impl Spec {
@@ -28,24 +32,31 @@ impl Spec {
     /// | | layer | attribute with the heights |
     /// |---|---|---|
     /// | `FILE` | the only one | none |
-    /// | `FILE:NAME`, if the format has one layer per file (shapefile, GeoJSON) | the only one | `NAME` |
+    /// | `FILE:NAME`, if the format has one layer per file (shapefile, GeoJSON, FlatGeobuf) | the only one | `NAME` |
     /// | `FILE:NAME`, for all other formats | `NAME` | none |
     /// | `FILE:LAYER:FIELD` | `LAYER` | `FIELD` |
     /// | `FILE::FIELD` | the only one | `FIELD` |
+    ///
+    /// Each may be followed by ` where ` in any case and a [`Condition`], as in `edges.gpkg:lines
+    /// where kind = 'toe'`: only such records are read.
     ///
     /// The file is the longest part before a colon that exists; if none does, the part before the
     /// first colon. The colon after a drive letter and colons before the last separator belong to
     /// the path. The format follows from the first bytes and the extension of the file.
     ///
     /// # Errors
-    /// If a name is missing after a colon.
+    /// If a name is missing after a colon, or the condition is none.
     pub fn parse(text: &str) -> Result<Self> {
+        let (text, condition) = without_condition(text);
+        let condition = condition.map(Condition::parse).transpose();
+        let condition = condition.map_err(|error| error.in_file(text))?;
         let (path, names) = split(text);
         let of_path = |layer: Option<&str>, field: Option<&str>| {
             Ok(Spec {
                 path: path.to_owned(),
                 layer: layer.map(str::to_owned),
                 field: field.map(str::to_owned),
+                condition: condition.clone(),
             })
         };
         match names.map(|names| (names, names.split_once(':'))) {
@@ -71,6 +82,7 @@ impl Spec {
             layer: self.layer.as_deref(),
             height_field: self.field.as_deref(),
             columns,
+            condition: self.condition.as_ref(),
             cut,
             ..Options::default()
         }
@@ -80,9 +92,33 @@ impl Spec {
 /// The forms that [`Spec::parse`] reads, for a message.
 const FORMS: &str = "write FILE, FILE:FIELD, FILE:LAYER:FIELD or FILE::FIELD";
 
-/// Returns the file of a layer as a user names it, without the names that may follow.
+/// Returns the file of a layer as a user names it, without the names and the condition that may
+/// follow.
 pub fn file_of(text: &str) -> &Path {
-    split(text).0
+    split(without_condition(text).0).0
+}
+
+/// Returns a layer as a user names it with a condition, in the form that [`Spec::parse`] reads.
+pub fn with_condition(text: &str, condition: &str) -> String {
+    format!("{text}{WHERE}{condition}")
+}
+
+/// What is between the name of a layer and its condition, in any case.
+const WHERE: &str = " where ";
+
+/// Splits a text into the name of a layer and the condition after it. A file may have a name that
+/// looks as if there were one.
+pub(super) fn without_condition(text: &str) -> (&str, Option<&str>) {
+    if Path::new(text).exists() {
+        return (text, None);
+    }
+    // Only ASCII is changed, so positions remain.
+    let lower = text.to_ascii_lowercase();
+    let splits = lower.match_indices(WHERE);
+    let mut splits = splits.map(|(at, _)| (&text[..at], Some(&text[at + WHERE.len()..])));
+    let first = splits.clone().next();
+    let of_file = splits.find(|(name, _)| split(name).0.exists());
+    of_file.or(first).unwrap_or((text, None))
 }
 
 /// Splits a text into the file and the names after it.
@@ -144,7 +180,9 @@ pub fn read_with(path: &Path, options: &Options, watch: Watch) -> Result<Layer> 
             )));
     }
     match formats::detect_file(path)?.and_then(|format| format.reader.layer()) {
-        Some(read) => read(path, options, watch),
+        Some(read) => options
+            .read_chosen(watch, |options| read(path, options, watch))
+            .map_err(|error| error.in_file(path)),
         None => Err(unsupported(path)),
     }
 }
@@ -176,7 +214,7 @@ fn unsupported(path: &Path) -> Error {
     };
     Error::unsupported(format!(
         "not a vector format of this build, which reads shapefiles (.shp), GeoJSON (.geojson)\
-         {package} and DXF"
+         {package}, FlatGeobuf (.fgb) and DXF"
     ))
     .in_file(path)
     .cure(wording![
@@ -195,6 +233,7 @@ mod tests {
             path: path.into(),
             layer: layer.map(str::to_owned),
             field: field.map(str::to_owned),
+            condition: None,
         }
     }
 
@@ -296,11 +335,11 @@ mod tests {
     #[test]
     fn other_formats_are_refused_with_the_cure() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("a.fgb");
-        std::fs::write(&path, "fgb\x03fgb").unwrap();
+        let path = folder.path().join("a.kml");
+        std::fs::write(&path, "<?xml version=\"1.0\"?><kml/>").unwrap();
         let error = read(&format!("{}:roads", path.display())).unwrap_err();
         assert!(error.to_string().ends_with(
-            "a.fgb: not a vector format of this build, which reads shapefiles (.shp), GeoJSON (.geojson), GeoPackage (.gpkg) and DXF"
+            "a.kml: not a vector format of this build, which reads shapefiles (.shp), GeoJSON (.geojson), GeoPackage (.gpkg), FlatGeobuf (.fgb) and DXF"
         ));
         assert!(
             error
@@ -316,10 +355,10 @@ mod tests {
                 .contains("no name")
         );
         assert!(
-            read("nowhere/a.fgb")
+            read("nowhere/a.kml")
                 .unwrap_err()
                 .to_string()
-                .starts_with("nowhere/a.fgb: ")
+                .starts_with("nowhere/a.kml: ")
         );
         let error = read("nowhere/a.dbf").unwrap_err();
         assert_eq!(*error.cure_text().unwrap(), "name its .shp: nowhere/a.shp");

@@ -169,27 +169,20 @@ fn refusal(head: &[u8], path: &Path) -> Error {
 ///
 /// # Errors
 /// If the layer has shapes but no points, or a point has no height.
-pub fn from_layer(layer: Layer) -> Result<LayerPoints> {
-    let Layer {
-        format,
-        shapes,
-        crs,
-        unread_crs,
-        mut warnings,
-        ..
-    } = layer;
-    let mut points = Vec::new();
-    let mut others = 0_usize;
-    let total = shapes
+pub fn from_layer(mut layer: Layer) -> Result<LayerPoints> {
+    let all = std::mem::take(&mut layer.shapes);
+    let total = all
         .iter()
         .filter(|shape| !matches!(shape, Shape::Null))
         .count();
-    for (i, shape) in shapes.into_iter().enumerate() {
+    let mut points = Vec::new();
+    let mut others = 0_usize;
+    for (i, shape) in all.into_iter().enumerate() {
         match shape {
             Shape::Points(found) => {
                 if let Some([x, y, _]) = found.iter().find(|point| point[2].is_nan()) {
                     return Err(Error::format(format!("the point at {x} {y} has no height"))
-                        .at(format!("record {}", i + 1))
+                        .at(format!("record {}", layer.record(i)))
                         .cure("if an attribute holds the heights, name it: FILE:FIELD, or FILE:LAYER:FIELD for one of several layers"));
                 }
                 points.extend(found);
@@ -198,6 +191,13 @@ pub fn from_layer(layer: Layer) -> Result<LayerPoints> {
             Shape::Lines(_) | Shape::Polygon(_) | Shape::Faces(_) => others += 1,
         }
     }
+    let Layer {
+        format,
+        crs,
+        unread_crs,
+        mut warnings,
+        ..
+    } = layer;
     if others > 0 && others == total {
         return Err(
             Error::usage(format!("{format} has no points, but {others} other shapes")).cure(
@@ -329,7 +329,7 @@ mod tests {
                 "a TIFF file; points are read from LAS, LAZ",
                 "raster",
             ),
-            (b"fgb\x03fgb", "a FlatGeobuf file", "the feature `gdal`"),
+            (b"AC1032\0\0", "a DWG drawing", "the feature `gdal`"),
             (
                 b"{\"type\": \"FeatureCollection\"}",
                 "a JSON file",

@@ -1,9 +1,9 @@
 //! What callers ask of readers.
 
+pub(crate) mod condition;
 pub(crate) mod cut;
 pub(crate) mod las;
 pub(crate) mod layer;
-#[cfg(any(feature = "gdal", feature = "gpkg"))]
 pub(crate) mod layers;
 pub(crate) mod map_sheet;
 pub(crate) mod plot;

@@ -12,6 +12,7 @@ use super::plan;
 use super::request::{self, Options};
 use super::tile_options::TileOptions;
 use crate::error::{Command, Error, Result, Wording, wording};
+use crate::io::layer;
 use crate::run::products::surface::{Source, SurfaceRequest};
 use crate::run::sources::checksum::checksum;
 use crate::run::verbs::targets::Targets;
@@ -175,12 +176,24 @@ pub(super) fn whole(request: &WriteRequest) -> Result<WriteRequest> {
 /// Makes names whole that a function visits.
 fn whole_names(each_file: impl FnOnce(&mut dyn FnMut(&mut PathBuf))) -> Result<()> {
     let mut result = Ok(());
-    each_file(&mut |file| match std::path::absolute(&*file) {
+    each_file(&mut |file| match whole_name(file) {
         Ok(whole) => *file = whole,
         Err(error) if result.is_ok() => result = Err(Error::from(error).in_file(&*file)),
         Err(_) => {}
     });
     result
+}
+
+/// Returns the whole name of a file, followed by the names of a layer and the condition that the
+/// path may have. Those are no path: two slashes in them are not one.
+fn whole_name(path: &Path) -> std::io::Result<PathBuf> {
+    let file = path.to_str().map(layer::file_of);
+    let Some((text, file)) = path.to_str().zip(file.and_then(Path::to_str)) else {
+        return std::path::absolute(path);
+    };
+    let mut whole = std::path::absolute(file)?.into_os_string();
+    whole.push(&text[file.len()..]);
+    Ok(whole.into())
 }
 
 /// A request as it is stored.

@@ -25,7 +25,7 @@ pub struct LineNames {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct LineName {
     file: usize,
-    fid: usize,
+    record: usize,
     part: Option<usize>,
 }
 
@@ -41,7 +41,7 @@ impl LineNames {
     pub(crate) fn add(&mut self, file: usize, line: &Drawn) {
         self.lines.push(LineName {
             file,
-            fid: line.fid,
+            record: line.record,
             part: line.part,
         });
     }
@@ -49,13 +49,12 @@ impl LineNames {
     /// Returns the name of a line, such as "edges.shp record 13, part 2", by its position among the
     /// breaklines; an empty string if there is no such line.
     pub fn name(&self, line: usize) -> String {
-        let Some(LineName { file, fid, part }) = self.lines.get(line) else {
+        let Some(LineName { file, record, part }) = self.lines.get(line) else {
             return String::new();
         };
         let part = part
             .map(|part| format!(", part {part}"))
             .unwrap_or_default();
-        let record = fid + 1;
         format!("{} record {record}{part}", self.files[*file].display())
     }
 
@@ -101,14 +100,15 @@ impl LineNames {
         Ok(())
     }
 
-    /// Formats a line as `edges.shp,12,2`.
+    /// Formats a line as `edges.shp,12,2`, with the feature id of GIS, which counts from 0.
     fn columns(&self, line: usize) -> String {
-        let Some(LineName { file, fid, part }) = self.lines.get(line) else {
+        let Some(LineName { file, record, part }) = self.lines.get(line) else {
             return ",,".to_owned();
         };
         format!(
-            "{},{fid},{}",
+            "{},{},{}",
             csv_field(&self.files[*file].to_string_lossy()),
+            record - 1,
             part.unwrap_or(1)
         )
     }
@@ -152,11 +152,12 @@ mod tests {
     #[test]
     fn a_row_for_every_line_above_the_lowest() {
         let mut names = LineNames::new(vec!["a,b.shp".into(), "c.shp".into()]);
-        for (file, fid, part) in [(0, 7, None), (1, 0, Some(2)), (1, 3, None)] {
+        for (file, at, part) in [(0, 7, None), (1, 0, Some(2)), (1, 3, None)] {
             names.add(
                 file,
                 &Drawn {
-                    fid,
+                    at,
+                    record: at + 1,
                     part,
                     points: Vec::new(),
                 },

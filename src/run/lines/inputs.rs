@@ -342,7 +342,7 @@ impl Adding<'_> {
         for ((number, line, lower), neighbors) in edges.into_iter().zip(neighbors) {
             let wall = Wall::continued(&line.points, &lower, width, high, neighbors);
             let wall =
-                wall.map_err(|error| shapes::at_record(error, layers[number].0, line.fid + 1))?;
+                wall.map_err(|error| shapes::at_record(error, layers[number].0, line.record))?;
             walls[number].push((line, wall));
         }
         Ok(walls)
@@ -373,7 +373,7 @@ impl Adding<'_> {
                 ),
             };
             let line = parts.swap_remove(0);
-            let wall = wall.map_err(|error| shapes::at_record(error, path, line.fid + 1))?;
+            let wall = wall.map_err(|error| shapes::at_record(error, path, line.record))?;
             walls.push((line, wall));
         }
         Ok(walls)
@@ -399,7 +399,7 @@ impl Adding<'_> {
         transform: Option<usize>,
     ) -> Result<Vec<f64>> {
         let (LowerEdge::Height(of_record) | LowerEdge::Drop(of_record)) = edge;
-        let number = of_record.of(layer, line.fid);
+        let number = of_record.of(layer, line.at);
         if !number.is_finite() {
             let error = Error::format("the record has no height of the lower edge of the wall")
                 .cure(wording![
@@ -409,7 +409,7 @@ impl Adding<'_> {
                     Setting::WallDrop,
                     ", or remove the record"
                 ]);
-            return Err(shapes::at_record(error, path, line.fid + 1));
+            return Err(shapes::at_record(error, path, line.record));
         }
         let below = |upper: &[[f64; 3]]| -> Vec<[f64; 3]> {
             let low = |p: &[f64; 3]| match edge {
@@ -462,7 +462,7 @@ impl Adding<'_> {
             }
             let rings: Vec<Vec<[f64; 3]>> = rings.into_iter().map(|ring| ring.points).collect();
             let flat =
-                Flat::new(&rings, height).map_err(|e| shapes::at_record(e, path, first.fid + 1))?;
+                Flat::new(&rings, height).map_err(|e| shapes::at_record(e, path, first.record))?;
             let (height, spread) = (flat.height(), flat.spread());
             let numbers = self
                 .builder
@@ -488,7 +488,7 @@ impl Adding<'_> {
         path: &Path,
         transform: Option<usize>,
     ) -> Result<f64> {
-        let height = number.of(layer, ring.fid);
+        let height = number.of(layer, ring.at);
         match (number, ring.points.first()) {
             (PerRecord::Field(_), Some(&[x, y, _])) if height.is_finite() => {
                 let mut on_shore = [[x, y, height]];
@@ -571,7 +571,7 @@ impl Adding<'_> {
         path: &Path,
         transform: Option<usize>,
     ) -> Result<Vec<(Drawn, River)>> {
-        for (record, shape) in (1..).zip(&layer.shapes) {
+        for (at, shape) in layer.shapes.iter().enumerate() {
             let error = match shape {
                 Shape::Polygon(_) => Error::format("a polygon is not a bank").cure(wording![
                     "divide its ring into the two banks of the river, or use ",
@@ -584,7 +584,7 @@ impl Adding<'_> {
                 }
                 _ => continue,
             };
-            return Err(shapes::at_record(error, path, record));
+            return Err(shapes::at_record(error, path, layer.record(at)));
         }
         let by_record = records(shapes::with_heights(layer, path, Setting::Rivers)?);
         let rivers = match &self.request.river_width {
@@ -610,7 +610,7 @@ impl Adding<'_> {
             let river = match (&self.request.river_width, parts.as_slice()) {
                 (Some(width @ PerRecord::Field(_)), [middle, ..]) => {
                     // Attributes are in the units of the layer.
-                    let width = width.of(layer, middle.fid) * (length(middle) / in_layer);
+                    let width = width.of(layer, middle.at) * (length(middle) / in_layer);
                     River::along(&middle.points, width)
                 }
                 (Some(PerRecord::Number(width)), [middle, ..]) => {
@@ -620,7 +620,7 @@ impl Adding<'_> {
                 _ => continue, // banks come in pairs
             };
             let line = parts.swap_remove(0);
-            let river = river.map_err(|e| shapes::at_record(e, path, line.fid + 1))?;
+            let river = river.map_err(|e| shapes::at_record(e, path, line.record))?;
             named.push((line, river));
         }
         Ok(named)
@@ -636,7 +636,7 @@ fn banks(by_record: Vec<Vec<Drawn>>, path: &Path) -> Result<Vec<Vec<Drawn>>> {
     ];
     let mut pairs: Vec<Vec<Drawn>> = Vec::new();
     for parts in by_record {
-        let record = parts[0].fid + 1;
+        let record = parts[0].record;
         let is_open = pairs.last().is_some_and(|pair| pair.len() == 1);
         match (parts.len(), pairs.last_mut().filter(|_| is_open)) {
             (1, Some(open)) => open.extend(parts),
@@ -660,7 +660,7 @@ fn banks(by_record: Vec<Vec<Drawn>>, path: &Path) -> Result<Vec<Vec<Drawn>>> {
         Some(pair) if pair.len() == 1 => Err(shapes::at_record(
             Error::format("the bank has no opposite bank").cure(cure),
             path,
-            pair[0].fid + 1,
+            pair[0].record,
         )),
         _ => Ok(pairs),
     }
@@ -675,7 +675,7 @@ const SHORE_TOLERANCE_METRES: f64 = 0.3;
 /// The lines of each record.
 fn records(drawn: Vec<Drawn>) -> Vec<Vec<Drawn>> {
     drawn
-        .chunk_by(|p, q| p.fid == q.fid)
+        .chunk_by(|p, q| p.at == q.at)
         .map(<[Drawn]>::to_vec)
         .collect()
 }

@@ -21,8 +21,10 @@ pub(crate) struct Polygon {
 /// A line of a layer, with its record and part.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Drawn {
-    /// The position of its record, counted from 0 like the feature ids of GIS.
-    pub(crate) fid: usize,
+    /// The position of its record in the layer.
+    pub(crate) at: usize,
+    /// The number of its record in the file, counted from 1.
+    pub(crate) record: usize,
     /// The number of the part or ring, counted from 1, if there are several.
     pub(crate) part: Option<usize>,
     pub(crate) points: Vec<[f64; 3]>,
@@ -56,13 +58,14 @@ fn read(
     check: impl Fn(&[Vec<[f64; 3]>]) -> Result<()>,
 ) -> Result<Vec<Drawn>> {
     let mut lines = Vec::new();
-    for (record, shape) in (1..).zip(&layer.shapes) {
+    for (at, shape) in layer.shapes.iter().enumerate() {
+        let record = layer.record(at);
         let parts = match shape {
             Shape::Lines(parts) | Shape::Polygon(parts) => parts,
             Shape::Null | Shape::Points(_) | Shape::Faces(_) => continue,
         };
         check(parts).map_err(|e| at_record(e, path, record))?;
-        lines.extend(drawn(parts, record - 1));
+        lines.extend(drawn(parts, at, record));
     }
     // An empty layer is fine, as of a tile without lakes; a layer of points, say, is a mistake.
     if lines.is_empty() && !layer.shapes.is_empty() {
@@ -140,7 +143,8 @@ type Joined = (usize, Vec<[f64; 2]>);
 fn areas(layer: &Layer, path: &Path, setting: Setting) -> Result<(Vec<Polygon>, Vec<Joined>)> {
     let mut polygons = Vec::new();
     let mut lines: Vec<Drawn> = Vec::new();
-    for (record, shape) in (1..).zip(&layer.shapes) {
+    for (at, shape) in layer.shapes.iter().enumerate() {
+        let record = layer.record(at);
         let (Shape::Polygon(parts) | Shape::Lines(parts)) = shape else {
             continue;
         };
@@ -152,11 +156,11 @@ fn areas(layer: &Layer, path: &Path, setting: Setting) -> Result<(Vec<Polygon>, 
                 let rings = parts.iter().map(|ring| in_two(ring)).collect();
                 polygons.push(Polygon { record, rings });
             }
-            _ => lines.extend(drawn(parts, record - 1)),
+            _ => lines.extend(drawn(parts, at, record)),
         }
     }
     let flat: Rings = lines.iter().map(|line| in_two(&line.points)).collect();
-    let record = |line: usize| lines[line].fid + 1;
+    let record = |line: usize| lines[line].record;
     let rings =
         rings::close(&flat).map_err(|gap| at_record(gap.error(), path, record(gap.line)))?;
     if polygons.is_empty() && rings.is_empty() {
@@ -178,11 +182,12 @@ fn in_two(points: &[[f64; 3]]) -> Vec<[f64; 2]> {
 }
 
 /// Returns the parts that are lines, with their numbers.
-fn drawn(parts: &[Vec<[f64; 3]>], fid: usize) -> impl Iterator<Item = Drawn> {
+fn drawn(parts: &[Vec<[f64; 3]>], at: usize, record: usize) -> impl Iterator<Item = Drawn> {
     let is_one_of_many = parts.len() > 1;
     let lines = (1..).zip(parts).filter(|(_, points)| points.len() > 1);
     lines.map(move |(number, points)| Drawn {
-        fid,
+        at,
+        record,
         part: is_one_of_many.then_some(number),
         points: points.clone(),
     })
@@ -290,8 +295,9 @@ mod tests {
             Shape::Null,
             Shape::Lines(vec![line.clone()]),
         ];
-        let drawn = |fid, points| Drawn {
-            fid,
+        let drawn = |at, points| Drawn {
+            at,
+            record: at + 1,
             part: None,
             points,
         };
@@ -309,7 +315,7 @@ mod tests {
         assert_eq!(
             lines
                 .iter()
-                .map(|line| (line.fid, line.part))
+                .map(|line| (line.at, line.part))
                 .collect::<Vec<_>>(),
             [(0, Some(1)), (0, Some(3))]
         );

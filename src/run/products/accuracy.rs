@@ -400,7 +400,7 @@ impl Checkpoints {
             }
         };
         let mut rows = Vec::new();
-        for ((number, shape), i) in (1..).zip(&layer.shapes).zip(0..) {
+        for (i, shape) in layer.shapes.iter().enumerate() {
             let Shape::Points(points) = shape else {
                 continue;
             };
@@ -409,7 +409,7 @@ impl Checkpoints {
                 .map(|groups| groups.get(i).cloned().unwrap_or_default());
             for &point in points {
                 rows.push(CheckpointRow {
-                    number,
+                    number: layer.record(i) as u64,
                     point,
                     surface: f64::NAN,
                     group: group.clone(),

@@ -73,12 +73,12 @@ pub fn drape(
     check_step(options.step, &plan)?;
     let step = options.step.map(|step| (step, Vertices::Kept));
     let title = |record: usize| format!("record {record}");
-    check_lengths(&plan, path, |line| title(lines[line].fid + 1), &journal)?;
+    check_lengths(&plan, path, |line| title(lines[line].record), &journal)?;
     let found = follow(surface, &plan, |_, _| (), step, context)?;
     let records = |wanted: Coverage| {
         let each = lines.iter().zip(plan.iter().zip(&found));
         let of = each.filter(|(_, (line, stretches))| coverage(line, stretches) == wanted);
-        let mut records: Vec<usize> = of.map(|(line, _)| line.fid + 1).collect();
+        let mut records: Vec<usize> = of.map(|(line, _)| line.record).collect();
         records.dedup();
         records
     };
@@ -104,7 +104,7 @@ pub fn drape(
         let points = stretches
             .into_iter()
             .map(|stretch| stretch.into_iter().map(|p| p.at).collect());
-        parts[line.fid].extend(points);
+        parts[line.at].extend(points);
     }
     let shape = |parts: Vec<_>| match parts.is_empty() {
         true => Shape::Null,

@@ -193,7 +193,7 @@ fn short_names(names: &[PathBuf]) -> Vec<String> {
 fn along_line(drawn: &Drawn) -> Asked {
     let line = in_plan(std::slice::from_ref(drawn)).concat();
     let profile = Profile {
-        record: drawn.fid + 1,
+        record: drawn.record,
         part: drawn.part,
         range: [0.0, length(&line)],
         ..Profile::default()
@@ -217,7 +217,7 @@ fn across(
     for drawn in drawn {
         let axis = in_plan(std::slice::from_ref(drawn)).concat();
         let stations =
-            stations(&axis, options).map_err(|e| shapes::at_record(e, path, drawn.fid + 1))?;
+            stations(&axis, options).map_err(|e| shapes::at_record(e, path, drawn.record))?;
         // The difference of a station on the line can be beyond it by a rounding error.
         let length = length(&axis);
         let distance = |at: &f64| (at - options.start).max(0.0).min(length);
@@ -228,10 +228,10 @@ fn across(
             .zip(stations)
             .filter_map(|(line, at)| Some((line?, at)))
             .collect();
-        note_crossings(&lines, options.format, (path, drawn.fid + 1), journal);
+        note_crossings(&lines, options.format, (path, drawn.record), journal);
         asked.extend(lines.into_iter().map(|(line, at)| {
             let profile = Profile {
-                record: drawn.fid + 1,
+                record: drawn.record,
                 part: drawn.part,
                 station: Some(Station {
                     at,

@@ -207,13 +207,13 @@ impl LineRequest {
 }
 
 impl PerRecord {
-    /// Returns the number of a record, counted from 0; NaN if it has none.
-    pub(crate) fn of(&self, layer: &Layer, fid: usize) -> f64 {
+    /// Returns the number of a record, by its position in the layer; NaN if it has none.
+    pub(crate) fn of(&self, layer: &Layer, at: usize) -> f64 {
         match self {
             PerRecord::Number(number) => *number,
             PerRecord::Field(name) => layer
                 .column(name)
-                .and_then(|column| column.values.get(fid))
+                .and_then(|column| column.values.get(at))
                 .copied()
                 .unwrap_or(f64::NAN),
         }

@@ -35,10 +35,12 @@ pub(crate) struct SurfaceArgs {
     /// Lines with heights; of polygons, the rings are used. `FILE:FIELD` takes the height of each
     /// record from an attribute; FILE may be a glob, as in `lines/*.shp:FIELD`. In formats with
     /// several layers per file, such as GeoPackage, `FILE:LAYER` names one, `FILE:LAYER:FIELD`
-    /// both, and `FILE::FIELD` an attribute of the only layer. Where a vertex of a breakline and a
-    /// point have the same position, the height of the breakline is used; a point that lies on a
-    /// breakline between its vertices keeps its height. Lines without heights are refused
-    /// (--draped-lines takes them).
+    /// both, and `FILE::FIELD` an attribute of the only layer. Just after any option that takes
+    /// lines or areas, `--where "kind = 'toe' AND height > 2"` chooses records by their attributes
+    /// (=, <>, <, <=, >, >=, IN, BETWEEN, LIKE, IS NULL, AND, OR, NOT). Where a vertex of a
+    /// breakline and a point have the same position, the height of the breakline is used; a point
+    /// that lies on a breakline between its vertices keeps its height. Lines without heights are
+    /// refused (--draped-lines takes them).
     #[arg(long, value_name = "FILE[:NAME]", help_heading = "Surface")]
     pub(crate) breaklines: Vec<PathBuf>,
 

@@ -44,6 +44,12 @@ pub fn read_layer(path: &Path, layer: Option<&str>) -> Result<Layer> {
 /// Those of [`read_layer`], and that of the watch; if an attribute does not exist, or a value of a
 /// requested column is not a number.
 pub fn read_layer_with(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
+    options
+        .read_chosen(watch, |options| read_all(path, options, watch))
+        .map_err(|error| error.in_file(path))
+}
+
+fn read_all(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
     messages::listen();
     let open = DatasetOptions {
         open_flags: GdalOpenFlags::GDAL_OF_VECTOR,
