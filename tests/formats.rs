@@ -145,7 +145,9 @@ fn products_have_the_extensions_that_they_had() {
         ),
         (
             Product::Contours,
-            &["shp", "geojson", "json", "geojsonl", "geojsons", "gpkg"],
+            &[
+                "shp", "geojson", "json", "geojsonl", "geojsons", "gpkg", "fgb",
+            ],
         ),
         (Product::Heights, &["tif", "tiff", "asc", "xyz"]),
         (Product::Shades, &["tif", "tiff", "png"]),

@@ -29,6 +29,28 @@ impl Value {
     }
 }
 
+/// What all values of an attribute are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum ValueKind {
+    Whole,
+    Number,
+    Truth,
+    Text,
+}
+
+impl Value {
+    /// Returns what the value is; `None` if it is missing.
+    fn kind(&self) -> Option<ValueKind> {
+        Some(match self {
+            Value::Missing => return None,
+            Value::Whole(_) => ValueKind::Whole,
+            Value::Number(_) => ValueKind::Number,
+            Value::Text(_) => ValueKind::Text,
+            Value::Truth(_) => ValueKind::Truth,
+        })
+    }
+}
+
 /// The attributes of all records of a vector layer.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Attributes {
@@ -44,6 +66,19 @@ impl Attributes {
     pub(crate) fn texts(&self, name: &str) -> Option<Vec<String>> {
         let number = named(self.names.iter().map(String::as_str), name)?;
         Some(self.column(number).map(Value::text).collect())
+    }
+
+    /// Returns what all values of an attribute are; texts if they differ, or if there are none.
+    pub(crate) fn kind(&self, number: usize) -> ValueKind {
+        let kinds = self.column(number).filter_map(Value::kind);
+        let common = |a, b| match (a, b) {
+            (a, b) if a == b => a,
+            (ValueKind::Whole | ValueKind::Number, ValueKind::Whole | ValueKind::Number) => {
+                ValueKind::Number
+            }
+            _ => ValueKind::Text,
+        };
+        kinds.reduce(common).unwrap_or(ValueKind::Text)
     }
 
     /// Returns the values of an attribute, one for each shape.

@@ -52,6 +52,7 @@ mod surface_facts;
 mod triangles;
 mod without_lines;
 
+pub(crate) use attributes::ValueKind;
 pub use attributes::{Attributes, Value};
 pub use bounds::Bounds;
 pub(crate) use bounds::{AT_ONCE, higher, lower, lowest_and_highest};

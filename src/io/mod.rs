@@ -5,7 +5,7 @@
 //! |---|---|---|
 //! | read points | [`points::open`] | [`las::open`], [`text::open`], [`points::from_layer`] |
 //! | write points | [`points::create`] | [`las::create`], [`text::create`] |
-//! | read lines and polygons | [`layer::read`] | [`shapefile::read_layer`], [`geojson::read_layer`], [`gpkg::read_layer_with`], [`gdal::read_layer`] |
+//! | read lines and polygons | [`layer::read`] | [`shapefile::read_layer`], [`geojson::read_layer`], [`gpkg::read_layer_with`], [`flatgeobuf::read_layer_with`], [`gdal::read_layer`] |
 //! | read a raster | [`raster::open`] | [`geotiff::open`], [`ascii_grid::open`], [`gdal::open_raster`] |
 //! | write a raster | | [`geotiff::write()`]; as a picture: [`png::write_gray`], [`png::write_colors`] |
 //! | read a color ramp | | [`ramp::read`] |
@@ -13,7 +13,7 @@
 //! | map a TIN to memory | [`mapped::open`], for a [`CompactTin`](crate::terrain::CompactTin) | |
 //! | read or write Triangle's files: points and segments in the plane, and their triangulation | | [`triangle::read`], [`triangle::write`] |
 //! | read or write triangulations in space: files of TetGen, MEDIT, VTK | | [`tetgen::read`], [`tetgen::write`] |
-//! | write contours | [`contours::write`] | [`shapefile::write_contours`], [`geojson::write_contours`], [`gpkg::write_contours`] |
+//! | write contours | [`contours::write`] | [`shapefile::write_contours`], [`geojson::write_contours`], [`gpkg::write_contours`], [`flatgeobuf::write_contours`] |
 //! | write other shapes | | [`shapefile::write_layer`] |
 //!
 //! One table lists all formats, and what can be read and written in each: [`formats`].
@@ -57,7 +57,8 @@ pub use bytes::output::{
 pub use bytes::watch::Watch;
 pub(crate) use codec::prj;
 pub use codec::{
-    ascii_grid, gdal, geojson, geotiff, gpkg, las, png, ramp, shapefile, tetgen, text, triangle,
+    ascii_grid, flatgeobuf, gdal, geojson, geotiff, gpkg, las, png, ramp, shapefile, tetgen, text,
+    triangle,
 };
 pub use fronts::{contours, layer, mesh, points, profiles, raster};
 pub use options::cut::OnDamage;

@@ -504,7 +504,7 @@ fn the_layer_and_the_field_of_heights_follow_the_file() {
         ("10:30/l:Z.geojson", &flat),
         ("ring.geojson", &ring),
         ("p.geojson", &points),
-        ("a.fgb", "fgb\x03fgb"),
+        ("a.kml", "<?xml version=\"1.0\"?><kml/>"),
     ]);
     let tin = |args: &[&str]| {
         run_in(
@@ -547,10 +547,10 @@ fn the_layer_and_the_field_of_heights_follow_the_file() {
     tin(&["a.xyz", "--boundary", "ring.geojson:ring:Z"]).works(&[]);
     tin(&["a.xyz", "--boundary", "ring.geojson:site:Z"]).fails(2, &["there is no layer \"site\""]);
     if !breakline::io::gdal::IS_AVAILABLE {
-        lines("a.fgb:roads:Z").fails(
+        lines("a.kml:roads:Z").fails(
             1,
             &[
-                "a.fgb: not a vector format of this build",
+                "a.kml: not a vector format of this build",
                 "--features gdal",
             ],
         );

@@ -68,7 +68,7 @@ fn contours_come_back_from_each_format() {
     let error =
         contours::write(&folder.path().join("c.dxf"), &mut lines().into_iter(), None).unwrap_err();
     assert!(error.to_string().ends_with(
-        "c.dxf: contours are written as .shp, .geojson, .json, .geojsonl, .geojsons or .gpkg"
+        "c.dxf: contours are written as .shp, .geojson, .json, .geojsonl, .geojsons, .gpkg or .fgb"
     ));
 }
 

@@ -1,5 +1,6 @@
 //! Attributes of vector layers, looked up by name.
 
+use crate::data::Value;
 use crate::error::Error;
 
 /// Limit for the characters of a value in a message.
@@ -35,6 +36,22 @@ pub(crate) fn parse_number(text: &str) -> std::result::Result<f64, String> {
         Ok(value) => Ok(finite_or_none(value)),
         Err(_) => Err(text.to_owned()),
     }
+}
+
+/// Returns the number that a value is, or that its text is; NaN if there is none or it is not
+/// finite.
+///
+/// # Errors
+/// Returns the text if it does not parse as a number.
+pub(crate) fn number_of(value: &Value) -> std::result::Result<f64, String> {
+    let number = match value {
+        Value::Missing => f64::NAN,
+        Value::Whole(whole) => *whole as f64,
+        Value::Number(number) => *number,
+        Value::Text(text) => parse_number(text.trim())?,
+        Value::Truth(truth) => return Err(truth.to_string()),
+    };
+    Ok(finite_or_none(number))
 }
 
 /// Returns a number, or NaN, which stands for none, if it is infinite.

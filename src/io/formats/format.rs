@@ -107,7 +107,7 @@ pub(super) enum KnownBy {
 pub(super) enum Magic {
     /// These bytes, at this offset.
     At(usize, &'static [u8]),
-    /// This word, in any case.
+    /// This word, in any case, also behind a mark of UTF-8.
     Word(&'static str),
 }
 
@@ -116,6 +116,8 @@ impl Magic {
         match self {
             Magic::At(at, bytes) => head.get(at..).is_some_and(|rest| rest.starts_with(bytes)),
             Magic::Word(word) => head
+                .strip_prefix(b"\xef\xbb\xbf")
+                .unwrap_or(head)
                 .get(..word.len())
                 .is_some_and(|start| start.eq_ignore_ascii_case(word.as_bytes())),
         }
@@ -210,6 +212,21 @@ pub(crate) struct Writers {
     /// Writes several files together, see [`tetgen::write`](crate::io::tetgen::write).
     pub(crate) space: Option<WriteSpace>,
 }
+
+/// The writers of a format that is only read.
+pub(super) const NOT_WRITTEN: Writers = Writers {
+    points: None,
+    surface: None,
+    contours: None,
+    lines: None,
+    map: None,
+    check_size: None,
+    heights: None,
+    shades: None,
+    colors: None,
+    plane: None,
+    space: None,
+};
 
 /// A file format; [`FORMATS`](super::FORMATS) lists them all.
 #[derive(Debug)]

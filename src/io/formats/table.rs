@@ -2,8 +2,8 @@
 //! [`raster`], [`vector`] or [`plane`] returns.
 
 use super::format::{
-    Content, Format, FormatReader, Holding, KnownBy, Magic, PointWriter, Sink, WriteContours,
-    WriteLines, WriteSurface, Writers,
+    Content, Format, FormatReader, Holding, KnownBy, Magic, NOT_WRITTEN, PointWriter, Sink,
+    WriteContours, WriteLines, WriteSurface, Writers,
 };
 use crate::data::PointInfo;
 use crate::error::{Command, Feature, Wording, wording};
@@ -13,8 +13,8 @@ use crate::io::codec::geotiff::CellFormat;
 use crate::io::codec::las::{Detail, Packing, Rounding};
 use crate::io::codec::listing::Remarks;
 use crate::io::codec::{
-    ascii_grid, cityjson, dxf, geojson, geotiff, glb, gpkg, landxml, las, mesh2dm, obj, off, ply,
-    png, shapefile, stl, tetgen, text, tin, triangle, ugrid, xyz_grid,
+    ascii_grid, cityjson, dxf, flatgeobuf, geojson, geotiff, glb, gpkg, landxml, las, mesh2dm, obj,
+    off, ply, png, shapefile, stl, tetgen, text, tin, triangle, ugrid, xyz_grid,
 };
 
 const SHAPES: &[Holding] = &[Holding::Points, Holding::Lines, Holding::Polygons];
@@ -26,20 +26,6 @@ const SHAPES_AND_CRS: &[Holding] = &[
 ];
 const SURFACE: &[Holding] = &[Holding::Mesh, Holding::Crs];
 const SURFACE_AND_LINES: &[Holding] = &[Holding::Mesh, Holding::Edges, Holding::Crs];
-
-const NOT_WRITTEN: Writers = Writers {
-    points: None,
-    surface: None,
-    contours: None,
-    lines: None,
-    map: None,
-    check_size: None,
-    heights: None,
-    shades: None,
-    colors: None,
-    plane: None,
-    space: None,
-};
 
 pub(crate) fn with_gdal() -> Wording {
     wording!["to read it, build with ", Feature::Gdal]
@@ -355,6 +341,23 @@ pub static FORMATS: &[Format] = &[
             ..NOT_WRITTEN
         },
         help: "lines, polygons and points in named layers; contours; draped lines",
+        ..ROW
+    },
+    Format {
+        name: "FlatGeobuf",
+        noun: "a FlatGeobuf file",
+        extensions: &["fgb"],
+        magic: &[Magic::At(0, b"fgb\x03fgb")],
+        known_by: KnownBy::Bytes,
+        content: Content::Layer,
+        holds: SHAPES_AND_CRS,
+        gdal_names: &["FlatGeobuf"],
+        reader: FormatReader::Layer(flatgeobuf::read_layer_with),
+        writers: layer_writers(
+            |target, lines, crs| flatgeobuf::write_contours(target, lines, crs),
+            |target, layer| flatgeobuf::write_lines(target, layer),
+        ),
+        help: "lines, polygons and points; contours; draped lines; with an index",
         ..ROW
     },
     Format {
@@ -752,12 +755,6 @@ pub static FORMATS: &[Format] = &[
         "a JPEG 2000 picture",
         &[],
         &[Magic::At(4, b"jP  "), Magic::At(0, b"\xff\x4f\xff\x51")],
-    ),
-    vector(
-        "FlatGeobuf",
-        "a FlatGeobuf file",
-        &["fgb"],
-        &[Magic::At(0, b"fgb\x03fgb")],
     ),
     vector(
         "XML (GML, KML)",

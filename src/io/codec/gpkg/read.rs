@@ -8,12 +8,12 @@ use rusqlite::types::ValueRef;
 use rusqlite::{Connection, ErrorCode, OpenFlags, OptionalExtension, Row};
 
 use super::geometry;
-use crate::crs::Crs;
 use crate::data::{Layer, Shape, Value};
 use crate::error::{Error, Result};
 use crate::io::bytes::appended::appended;
 use crate::io::bytes::field::{finite_or_none, not_a_number, parse_number};
 use crate::io::bytes::watch::Watch;
+use crate::io::codec::stated_system;
 use crate::io::options::layer::Options;
 use crate::io::options::layers::{Fields, warn_of_missing_heights};
 
@@ -329,19 +329,7 @@ impl Source {
         if matches!(self.system, -1 | 0) {
             return Ok(());
         }
-        let by_code = organization
-            .eq_ignore_ascii_case("EPSG")
-            .then(|| u32::try_from(code).ok())
-            .flatten()
-            .and_then(|code| Crs::from_epsg(code).ok());
-        match by_code.map_or_else(|| Crs::from_wkt(&definition), Ok) {
-            Ok(crs) => layer.crs = crs.unless_undefined(),
-            Err(error) => {
-                let unread = format!("the coordinate system is not understood: {error}");
-                layer.warnings.push(unread.into());
-                layer.unread_crs = Some(definition);
-            }
-        }
+        stated_system::read(&organization, code, definition, layer);
         Ok(())
     }
 }

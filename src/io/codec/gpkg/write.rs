@@ -8,7 +8,7 @@ use rusqlite::{Connection, OpenFlags, Statement, params, params_from_iter};
 use super::geometry::{self, Form, Kind};
 use super::read::quoted;
 use crate::crs::Crs;
-use crate::data::{Bounds, ContourLine, Layer, Shape, ShapeKind, Value};
+use crate::data::{Bounds, ContourLine, Layer, Shape, ShapeKind, Value, ValueKind};
 use crate::error::{Error, Result};
 use crate::io::bytes::appended::appended;
 use crate::io::bytes::output::{Destination, is_stream};
@@ -259,26 +259,19 @@ fn columns(layer: &Layer, warnings: &mut Vec<String>) -> Vec<(String, &'static s
             warnings.push(format!("the attribute {name} is {free} in the GeoPackage"));
         }
         taken.insert(free.to_lowercase());
-        let values = attributes.column(number).filter(|v| **v != Value::Missing);
-        columns.push((free, type_of(values)));
+        columns.push((free, type_of(attributes.kind(number))));
     }
     columns
 }
 
-/// Returns the type of a column with these values.
-fn type_of<'a>(mut values: impl Iterator<Item = &'a Value>) -> &'static str {
-    let of = |value: &Value| match value {
-        Value::Whole(_) => "INTEGER",
-        Value::Number(_) => "REAL",
-        Value::Truth(_) => "BOOLEAN",
-        Value::Text(_) | Value::Missing => "TEXT",
-    };
-    let first = values.next().map_or("TEXT", of);
-    values.fold(first, |so_far, value| match (so_far, of(value)) {
-        (a, b) if a == b => a,
-        ("INTEGER" | "REAL", "INTEGER" | "REAL") => "REAL",
-        _ => "TEXT",
-    })
+/// Returns the type of a column with values of a kind.
+fn type_of(kind: ValueKind) -> &'static str {
+    match kind {
+        ValueKind::Whole => "INTEGER",
+        ValueKind::Number => "REAL",
+        ValueKind::Truth => "BOOLEAN",
+        ValueKind::Text => "TEXT",
+    }
 }
 
 /// What is known of a layer before its records.
