@@ -166,6 +166,13 @@ impl Error {
         self
     }
 
+    /// Names another file, of which the one of the error is only a part or a copy.
+    #[must_use]
+    pub(crate) fn moved(mut self, path: &Path, part: impl fmt::Display) -> Self {
+        self.inner.path = None;
+        self.in_file(path).within(part)
+    }
+
     /// Adds what the user can do about it.
     #[must_use]
     pub fn cure(mut self, cure: impl Into<Wording>) -> Self {

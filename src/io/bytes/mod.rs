@@ -12,3 +12,4 @@ pub(crate) mod output;
 pub(crate) mod rows;
 pub(crate) mod watch;
 pub(crate) mod watched_value;
+pub(crate) mod zip;

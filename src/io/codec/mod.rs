@@ -34,3 +34,4 @@ pub(crate) mod ugrid;
 pub(crate) mod world_file;
 mod xml;
 pub(crate) mod xyz_grid;
+pub(crate) mod zipped;

@@ -14,7 +14,7 @@ use crate::io::codec::las::{Detail, Packing, Rounding};
 use crate::io::codec::listing::Remarks;
 use crate::io::codec::{
     ascii_grid, cityjson, dxf, flatgeobuf, geojson, geotiff, glb, gpkg, landxml, las, mesh2dm, obj,
-    off, ply, png, shapefile, stl, tetgen, text, tin, triangle, ugrid, xyz_grid,
+    off, ply, png, shapefile, stl, tetgen, text, tin, triangle, ugrid, xyz_grid, zipped,
 };
 
 const SHAPES: &[Holding] = &[Holding::Points, Holding::Lines, Holding::Polygons];
@@ -290,6 +290,19 @@ pub static FORMATS: &[Format] = &[
             )
         },
         help: "lines, polygons and points; contours; draped lines",
+        ..ROW
+    },
+    Format {
+        name: "zipped shapefile",
+        noun: "a ZIP archive",
+        extensions: &["zip", "shz"],
+        magic: &[Magic::At(0, b"PK\x03\x04")],
+        known_by: KnownBy::Name,
+        content: Content::Layer,
+        holds: SHAPES_AND_CRS,
+        reader: FormatReader::Layers(zipped::read_layer_with),
+        cure: UNPACK,
+        help: "lines, polygons and points in named shapefiles",
         ..ROW
     },
     Format {
@@ -770,14 +783,6 @@ pub static FORMATS: &[Format] = &[
         magic: &[Magic::At(0, b"ASTM-E57")],
         reader: FormatReader::Unread,
         cure: || "save it as LAS or LAZ".into(),
-        ..ROW
-    },
-    Format {
-        name: "ZIP",
-        noun: "a ZIP archive",
-        magic: &[Magic::At(0, b"PK\x03\x04")],
-        reader: FormatReader::Unread,
-        cure: UNPACK,
         ..ROW
     },
     Format {
