@@ -8,8 +8,8 @@ use breakline::io::las::Rounding;
 use breakline::io::{Destination, formats};
 use breakline::run::proj::TransformOptions;
 use breakline::run::{
-    self, Alpha, Arithmetic, PointsReport, PointsRequest, SpaceOptions, TriangulateOptions,
-    Withheld,
+    self, Alpha, Arithmetic, Existing, PlanLength, PointTiles, PointsReport, PointsRequest,
+    SpaceOptions, TriangulateOptions, Withheld,
 };
 use breakline::{Error, cli, io};
 use pyo3::prelude::*;
@@ -206,7 +206,7 @@ pub(crate) fn read_points<'py>(
 
 /// Writes the selected points of files to a file; returns the counts.
 #[pyfunction]
-#[pyo3(signature = (files, read, systems, selection, output, overwrite, call))]
+#[pyo3(signature = (files, read, systems, selection, output, tiles, overwrite, call))]
 pub(crate) fn write_points<'py>(
     py: Python<'py>,
     files: Vec<PathBuf>,
@@ -214,16 +214,39 @@ pub(crate) fn write_points<'py>(
     systems: SystemArguments,
     selection: SelectionArguments,
     output: PathBuf,
+    tiles: Option<(String, Option<String>, bool)>,
     overwrite: bool,
     call: Call,
 ) -> PyResult<Bound<'py, PyDict>> {
     let request = selection.request(files, &read, &systems)?;
+    if let Some((size, buffer, flags_buffer)) = tiles {
+        let tiles = PointTiles {
+            folder: output,
+            size: length("tile", &size)?,
+            buffer: match buffer {
+                Some(buffer) => length("buffer", &buffer)?,
+                None => PlanLength::Units(0.0),
+            },
+            flags_buffer,
+            existing: Existing::of(overwrite),
+        };
+        let (written, _) = work::run(py, &call, |context| -> Result<_> {
+            Ok(run::write_point_tiles(&request, &tiles, context)?)
+        })?;
+        return report(py, &written);
+    }
     let mut written = PointsReport::default();
     write_to(py, &output, overwrite, &call, |target, context| {
         written = run::write_points(&request, target, context)?;
         Ok(())
     })?;
     report(py, &written)
+}
+
+/// Returns a length, or an error that names the parameter.
+fn length(parameter: &str, text: &str) -> PyResult<PlanLength> {
+    let wrong = |error: String| Failure(Error::usage(format!("{parameter}: {text}: {error}")));
+    Ok(text.parse().map_err(wrong)?)
 }
 
 const KERNELS: [(&str, Arithmetic); 3] = [

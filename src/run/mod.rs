@@ -20,7 +20,7 @@
 //! | slope, aspect, curvature, roughness | [`QuantityOptions`] | [`quantity`] | [`CellProduct`] |
 //! | contours | [`ContourOptions`] | [`contour()`] | [`ContourProduct`] |
 //! | contours for maps | [`ContourOptions`] | [`contour_map()`] | [`ContourMap`] |
-//! | select, clip and merge points | [`PointsRequest`] | [`write_points`], [`read_points`] | [`PointsReport`] |
+//! | select, clip and merge points | [`PointsRequest`] | [`write_points`], [`write_point_tiles`], [`read_points`] | [`PointsReport`] |
 //! | cut and fill above another surface or a level | [`VolumeOptions`] | [`volume()`] | [`VolumeProduct`] |
 //! | lines with the heights of a surface | [`DrapeOptions`] | [`drape`] | [`DrapeProduct`] |
 //! | heights along lines and across them | [`ProfileOptions`] | [`profile`] | [`ProfileProduct`] |
@@ -170,6 +170,7 @@ pub use triangulate::{
     Arithmetic, TriangulateOptions, TriangulateProduct, TriangulateReport, triangulate,
     triangulate_graph,
 };
+pub use verbs::point_tiles::{PlanLength, PointTiles, write_point_tiles};
 #[cfg(feature = "cli")] // whether two names are one file
 pub(crate) use verbs::targets;
 pub use verbs::targets::{Existing, Outputs, Target, Targets};

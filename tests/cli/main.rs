@@ -19,6 +19,7 @@ mod memory;
 mod methods;
 #[cfg(unix)]
 mod outputs;
+mod point_tiles;
 mod profiles;
 mod relief;
 mod results;

@@ -206,6 +206,7 @@ def write_points(
     systems: dict[str, Any],
     selection: dict[str, Any],
     output: str,
+    tiles: Optional[tuple[str, Optional[str], bool]],
     overwrite: bool,
     call: _Call,
 ) -> dict[str, Any]: ...

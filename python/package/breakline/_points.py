@@ -7,6 +7,7 @@ from typing import Any, Optional
 from . import _breakline, _inputs
 from ._call import Progress, call
 from ._columns import Points
+from ._errors import usage
 
 
 def _read(columns: Any, partial: bool, copc_resolution: Any = None) -> "dict[str, Any]":
@@ -38,6 +39,14 @@ def _selection(
         "seed": None if seed is None else _inputs.whole_numbers([seed], "seed", 2**64 - 1)[0],
         "round": bool(round),
     }
+
+
+def _tiles(tile: Any, buffer: Any, flag_buffer: bool) -> "Optional[tuple[str, Optional[str], bool]]":
+    if tile is None and (buffer is not None or flag_buffer):
+        raise usage("buffer without tiles", buffer, "pass tile, too")
+    if tile is None:
+        return None
+    return str(tile), None if buffer is None else str(buffer), bool(flag_buffer)
 
 
 def _systems(options: "dict[str, Any]") -> "dict[str, Any]":
@@ -163,6 +172,9 @@ def points(
     thin_keep: Any = None,
     seed: Any = None,
     round: bool = False,
+    tile: Any = None,
+    buffer: Any = None,
+    flag_buffer: bool = False,
     crs: Any = None,
     to_crs: Any = None,
     require_grids: bool = False,
@@ -186,10 +198,20 @@ def points(
         The file to write: ``.las``, ``.laz``, ``.xyz``, ``.txt`` or ``.csv``.
     round : bool
         Round coordinates to the nearest step of the first file's scale, if scales and offsets do not fit together.
+    tile : float or str
+        Write a file for each square of this side, into the folder ``output``, with the name ``X_Y`` of its lower left
+        corner: a number in the units of the coordinates, or a text such as ``"1km"``.
+    buffer : float or str
+        Points of other tiles up to this distance from a tile are in its file, too.
+    flag_buffer : bool
+        Flag the points of the buffer as withheld.
     overwrite : bool
         Replace a file that exists.
     classes, returns, drop_withheld, bounds, boundary, thin, thin_keep, seed, crs, to_crs, require_grids,
     epoch, columns, partial, copc_resolution
+        Replace files that exist.
+    classes, returns, drop_withheld, bounds, boundary, thin, thin_keep, seed, crs, to_crs, columns, partial,
+    copc_resolution
         As for :func:`read_points`.
     threads, progress
         As for :func:`read_points`.
@@ -220,6 +242,7 @@ def points(
             systems,
             selection,
             _inputs.path(output, "output"),
+            _tiles(tile, buffer, flag_buffer),
             bool(overwrite),
             request,
         )

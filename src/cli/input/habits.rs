@@ -207,7 +207,8 @@ const OF_OTHERS: &[(&str, &str)] = &[
     ),
     (
         "lastile",
-        "verbs work in tiles by themselves where memory is short: `--tiles`",
+        "`breakline points IN --tile 1km --buffer 20m -o FOLDER` writes points in tiles; verbs work in tiles by themselves \
+         where memory is short: `--tiles`",
     ),
 ];
 

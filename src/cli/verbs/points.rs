@@ -8,7 +8,10 @@ use crate::cli::report::written::commit;
 use crate::error::{Error, Result};
 use crate::io::formats::Product;
 use crate::io::las::Rounding;
-use crate::run::{PointsRequest, Withheld, write_points};
+use crate::run::{
+    Existing, PlanLength, PointTiles, PointsReport, PointsRequest, Withheld, write_point_tiles,
+    write_points,
+};
 use crate::terrain::{CellPoint, Thinning};
 
 /// Selects, clips and merges points.
@@ -21,16 +24,9 @@ pub(crate) fn run(args: &PointsArgs, console: &Console) -> Result<Exit> {
         .cloned()
         .chain(inputs::lists(&args.inputs))
         .collect();
-    let outputs = outputs::resolve(
-        &args.output,
-        &outputs::formats_of(Product::Points, |_| ()),
-        &all,
-    )?;
-    let [target] = outputs.targets.as_slice() else {
-        return Err(
-            Error::usage("several outputs are given, but points are read once")
-                .cure("run it once for each output"),
-        );
+    let several = || {
+        Error::usage("several outputs are given, but points are read once")
+            .cure("run it once for each output")
     };
     let request = PointsRequest {
         files,
@@ -52,7 +48,42 @@ pub(crate) fn run(args: &PointsArgs, console: &Console) -> Result<Exit> {
         },
         systems: systems(&args.systems)?,
     };
+    if let Some(size) = args.tile {
+        let [folder] = args.output.output.as_slice() else {
+            return Err(several());
+        };
+        let tiles = PointTiles {
+            folder: folder.clone(),
+            size,
+            buffer: args.buffer.unwrap_or(PlanLength::Units(0.0)),
+            flags_buffer: args.flag_buffer,
+            existing: Existing::of(args.output.overwrite),
+        };
+        let (report, count) = write_point_tiles(&request, &tiles, &console.context())?;
+        print(&report, console);
+        console.line(format_args!(
+            "tiles       {} in {}",
+            counted(count as u64, "file"),
+            folder.display()
+        ));
+        return Ok(Exit::Done);
+    }
+    let outputs = outputs::resolve(
+        &args.output,
+        &outputs::formats_of(Product::Points, |_| ()),
+        &all,
+    )?;
+    let [target] = outputs.targets.as_slice() else {
+        return Err(several());
+    };
     let report = write_points(&request, target.within(&outputs.set), &console.context())?;
+    print(&report, console);
+    commit(outputs, console)?;
+    Ok(Exit::Done)
+}
+
+/// Prints how many points were written, and why others were not.
+fn print(report: &PointsReport, console: &Console) {
     let left_out = [
         (report.withheld, "withheld"),
         (report.other_class, "of other classes"),
@@ -71,8 +102,6 @@ pub(crate) fn run(args: &PointsArgs, console: &Console) -> Result<Exit> {
         report.read
     ));
     print_extent(report.written.bounds, report.crs.as_ref(), console);
-    commit(outputs, console)?;
-    Ok(Exit::Done)
 }
 
 fn thinning(args: &PointsArgs) -> Result<Option<Thinning>> {

@@ -138,7 +138,7 @@ pub fn read_points(request: &PointsRequest, context: &Context) -> Result<PointsP
 }
 
 /// Takes the selected points of all files to a sink.
-fn transfer<'s>(
+pub(crate) fn transfer<'s>(
     request: &PointsRequest,
     detail: Detail,
     stage: Stage,

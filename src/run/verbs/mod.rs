@@ -6,6 +6,7 @@
 mod contour;
 mod dem;
 mod hillshade;
+pub(crate) mod point_tiles;
 mod quantity;
 mod raster;
 mod relief;

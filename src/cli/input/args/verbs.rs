@@ -10,7 +10,7 @@ use super::surface::{OnCrossingArg, SurfaceArgs};
 use super::systems::SystemArgs;
 use super::tiles::TileArgs;
 use crate::io::geotiff::Overviews;
-use crate::run::{Alpha, Arithmetic, FrameOptions};
+use crate::run::{Alpha, Arithmetic, FrameOptions, PlanLength};
 use crate::terrain::{CellPoint, Method, Shading};
 
 /// The files to write.
@@ -215,6 +215,37 @@ pub(crate) struct PointsArgs {
     /// `FILE:LAYER` names the layer of a file with several.
     #[arg(long, value_name = "FILE[:LAYER]", help_heading = "Selection")]
     pub(crate) boundary: Vec<PathBuf>,
+
+    /// Write a file for each square of this side, into the folder OUT
+    ///
+    /// A number in the units of the coordinates, or with `m` or `km`. Tiles begin at multiples of
+    /// it, and their files have the names X_Y of their lower left corners and the extension of the
+    /// first input, .las or .laz. The folder is created if it does not exist. All files appear
+    /// together at the end, or none. Needs disk space for all points, uncompressed.
+    #[arg(
+        long,
+        value_name = "LENGTH",
+        allow_negative_numbers = true,
+        help_heading = "Tiles"
+    )]
+    pub(crate) tile: Option<PlanLength>,
+
+    /// Points of other tiles up to this distance from a tile are in its file, too
+    #[arg(
+        long,
+        value_name = "LENGTH",
+        requires = "tile",
+        allow_negative_numbers = true,
+        help_heading = "Tiles"
+    )]
+    pub(crate) buffer: Option<PlanLength>,
+
+    /// Flag the points of the buffer as withheld
+    ///
+    /// Without it they are as they were, and surfaces of a tile use them. With it, `points
+    /// --drop-withheld` makes one file of tiles again, in which no point is twice.
+    #[arg(long, requires = "buffer", help_heading = "Tiles")]
+    pub(crate) flag_buffer: bool,
 
     /// Leave out points: `grid:SIZE`, `poisson:DISTANCE`, `nth:N` or `random:SHARE`
     ///

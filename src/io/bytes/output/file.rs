@@ -42,6 +42,7 @@ pub(super) enum Writing {
 }
 
 /// An output whose bytes are on the disk or in their stream.
+#[derive(Debug)]
 pub(super) struct Flushed {
     pub(super) renamed: Option<(Temporary, PathBuf)>,
     pub(super) target: PathBuf,

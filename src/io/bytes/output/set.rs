@@ -39,6 +39,8 @@ pub struct OutputSet {
 struct Staged {
     companions: Vec<Output>,
     outputs: Vec<Output>,
+    /// Outputs that are on the disk, and no longer open.
+    closed: Vec<Flushed>,
     stale: Vec<PathBuf>,
 }
 
@@ -86,6 +88,21 @@ impl OutputSet {
         self.staged.borrow_mut().outputs.push(output);
     }
 
+    /// Flushes the outputs so far to the disk and closes them, for sets of more files than a
+    /// process may have open. [`read_back`](Self::read_back) leaves them out.
+    ///
+    /// # Errors
+    /// If the last bytes cannot be written.
+    pub(crate) fn close_staged(&self) -> Result<()> {
+        let mut staged = self.staged.borrow_mut();
+        let open = std::mem::take(&mut staged.outputs);
+        for output in open {
+            let closed = output.flush_to_disk()?;
+            staged.closed.push(closed);
+        }
+        Ok(())
+    }
+
     /// Flushes all outputs to the disk, then renames them to their targets and returns the targets.
     /// Files that others need are renamed first, and come last in the result.
     ///
@@ -105,11 +122,15 @@ impl OutputSet {
         let Staged {
             companions,
             outputs,
+            closed,
             stale,
         } = self.staged.into_inner();
         let companion_count = companions.len();
-        let all = companions.into_iter().chain(outputs);
-        let flushed: Vec<Flushed> = all.map(Output::flush_to_disk).collect::<Result<_>>()?;
+        let companions = companions.into_iter().map(Output::flush_to_disk);
+        let closed = closed.into_iter().map(Ok);
+        let outputs = outputs.into_iter().map(Output::flush_to_disk);
+        let all = companions.chain(closed).chain(outputs);
+        let flushed: Vec<Flushed> = all.collect::<Result<_>>()?;
         confirm()?;
         // Dropped before `flushed`, whose remains are removed under the same lock.
         let mut renames = Renames::begin();
