@@ -185,3 +185,35 @@ fn a_dem_comes_back_to_the_bit_and_is_used_like_a_geotiff() {
         "no system is known"
     );
 }
+
+#[test]
+fn a_mark_of_utf8_is_no_part_of_the_header() {
+    let folder = folder_with(&[]);
+    let path = folder.path().join("a.asc");
+    let text =
+        "\u{feff}ncols 2\r\nnrows 1\r\nxllcorner 0\r\nyllcorner 0\r\ncellsize 2\r\n5 -9999\r\n";
+    std::fs::write(&path, text).unwrap();
+    let (grid, _) = ascii_grid::open(&path)
+        .unwrap()
+        .read_grid_with(&|_| Ok(()))
+        .unwrap();
+    assert!(grid.values[0] == 5.0 && grid.values[1].is_nan());
+    run_in(&folder, &["info", "a.asc"]).works(&["2 x 1"]);
+}
+
+#[test]
+fn a_height_that_stands_for_none_is_refused() {
+    let folder = folder_with(&[("p.xyz", "0 0 -9999\n2 0 -9999\n0 2 -9999\n2 2 -9999\n")]);
+    let run = run_in(
+        &folder,
+        &["dem", "p.xyz", "--resolution", "1", "-o", "a.asc"],
+    );
+    run.fails(
+        1,
+        &[
+            "a.asc: row 1, column 1: the height -9999 stands for a cell without data",
+            "write .tif",
+        ],
+    );
+    assert!(!folder.path().join("a.asc").exists());
+}

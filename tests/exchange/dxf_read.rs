@@ -187,3 +187,24 @@ fn lines_that_were_written_are_breaklines_again() {
     assert_eq!(layer.crs.unwrap().epsg, Some(25832));
     assert!(layer.warnings.is_empty());
 }
+
+#[test]
+fn names_of_layers_in_windows_1252_and_with_escapes() {
+    let folder = folder_with(&[]);
+    let path = folder.path().join("a.dxf");
+    let text = drawing("0 LINE 8 B?schung 10 1 20 2 30 3 11 4 21 5 31 6");
+    let read = |name: &[u8], layer: &str| {
+        let at = text.find('?').unwrap();
+        let bytes = [&text.as_bytes()[..at], name, &text.as_bytes()[at + 1..]].concat();
+        std::fs::write(&path, bytes).unwrap();
+        layer::read(&format!("{}:{layer}", path.display())).map(|layer| layer.shapes.len())
+    };
+    for name in [&b"\xf6"[..], "ö".as_bytes(), b"\\U+00F6"] {
+        assert_eq!(read(name, "Böschung").unwrap(), 1);
+    }
+    assert_eq!(read(b"\x80", "B€schung").unwrap(), 1);
+    // What is no escape stays.
+    for odd in ["\\U+12", "\\U+D800x", "\\U+éa"] {
+        assert_eq!(read(odd.as_bytes(), &format!("B{odd}schung")).unwrap(), 1);
+    }
+}

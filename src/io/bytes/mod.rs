@@ -1,6 +1,7 @@
 //! What formats are made of: files and outputs, numbers and rows of text.
 
 pub(crate) mod appended;
+pub(crate) mod code_page;
 pub(crate) mod contain;
 pub(crate) mod csv;
 pub(crate) mod decimal;

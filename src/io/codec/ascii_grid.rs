@@ -28,6 +28,9 @@ use crate::io::{Destination, Watch};
 /// The value of cells without one.
 const NODATA: f64 = -9999.0;
 
+/// What some programs write before a text in UTF-8.
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
 /// Bytes within which the header ends.
 const HEADER: u64 = 1 << 12;
 
@@ -53,7 +56,8 @@ pub fn open(path: impl AsRef<Path>) -> Result<AsciiGrid> {
     let open = || {
         let mut head = Vec::new();
         File::open(path)?.take(HEADER).read_to_end(&mut head)?;
-        let (frame, nodata, lines) = header(&head)?;
+        // Windows programs put a mark of UTF-8 before the text.
+        let (frame, nodata, lines) = header(head.strip_prefix(BYTE_ORDER_MARK).unwrap_or(&head))?;
         let mut warnings = Vec::new();
         let crs = match prj::read_beside(path)? {
             Prj::Stated(crs) => crs,
@@ -294,7 +298,11 @@ pub(crate) fn write(target: Destination, source: &dyn BlockSource) -> Result<Ras
         "ncols {}\nnrows {}\nxllcorner {left}\nyllcorner {bottom}\n{cell}\nNODATA_value {NODATA}",
         frame.width, frame.height
     )?;
-    let summary = cell_rows::write(&mut output, source, |_, cells| Ok(line(cells).into_bytes()))?;
+    let summary = cell_rows::write(&mut output, source, |row, cells| {
+        require_other_than_nodata(row, cells)?;
+        Ok(line(cells).into_bytes())
+    });
+    let summary = summary.map_err(|e| e.in_file(target.path()))?;
     let beside = target.path().with_extension("prj");
     let text = source.crs().map(Crs::to_prj).unwrap_or_default();
     if text.is_empty() {
@@ -306,6 +314,20 @@ pub(crate) fn write(target: Destination, source: &dyn BlockSource) -> Result<Ras
     prj.write_all(text.as_bytes())?;
     target.put_all([prj], output, [])?;
     Ok(summary)
+}
+
+/// Returns an error for a height that stands for none in the file: the header comes before all
+/// heights, and cannot state another value when one is met.
+fn require_other_than_nodata(row: usize, cells: &[f32]) -> Result<()> {
+    let found = cells.iter().position(|&cell| f64::from(cell) == NODATA);
+    match found {
+        None => Ok(()),
+        Some(column) => Err(Error::unsupported(format!(
+            "the height {NODATA} stands for a cell without data in an ASCII grid"
+        ))
+        .at(format!("row {}, column {}", row + 1, column + 1))
+        .cure("write .tif, which keeps it")),
+    }
 }
 
 /// Returns the lower edge from which a reader finds the upper one again, if there is such a number.

@@ -9,6 +9,7 @@ use std::str::FromStr;
 
 use crate::data::{Layer, Shape};
 use crate::error::{Error, Result, Wording};
+use crate::io::bytes::code_page::utf8_or_windows_1252;
 use crate::io::bytes::rows::shown;
 use crate::io::bytes::watch::{Meter, Watch, bytes_of};
 use crate::io::codec::listing::crs_text;
@@ -224,7 +225,7 @@ impl<'a> Drawing<'a> {
         let entity = &mut self.entity;
         let is_light = entity.kind == "LWPOLYLINE";
         match pair.code {
-            8 => entity.layer = String::from_utf8_lossy(pair.value).into_owned(),
+            8 => entity.layer = name(pair.value),
             10 if is_light => entity.vertices.push([pair.number()?, f64::NAN, f64::NAN]),
             20 if is_light => {
                 let y = pair.number()?;
@@ -393,6 +394,24 @@ impl<'a> Drawing<'a> {
             ..Layer::default()
         })
     }
+}
+
+/// Returns a name: in UTF-8 as of AutoCAD 2007, else in the code page of who wrote it, which is
+/// Windows-1252 unless the drawing says otherwise; signs that it lacks are `\U+` and 4 digits.
+fn name(bytes: &[u8]) -> String {
+    const ESCAPE: &str = "\\U+";
+    let text = utf8_or_windows_1252(bytes);
+    let mut parts = text.split(ESCAPE);
+    let mut name = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (digits, rest) = part.split_at_checked(4).unwrap_or(("", part));
+        let code = u32::from_str_radix(digits, 16).ok();
+        match code.and_then(char::from_u32) {
+            Some(sign) => name.extend([String::from(sign), rest.to_owned()]),
+            None => name.extend([ESCAPE, part]),
+        }
+    }
+    name
 }
 
 /// Returns an error if a vertex has no x or no y. One without a height has none: it is not at 0.

@@ -3,6 +3,8 @@
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::time::Duration;
 
 use rusqlite::types::ValueRef;
 use rusqlite::{Connection, ErrorCode, OpenFlags, OptionalExtension, Row};
@@ -39,10 +41,45 @@ const RECORDS_AT_ONCE: usize = 1024;
 pub fn read_layer_with(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
     let read = || {
         let database = open(path)?;
-        let source = Source::choose(&database, options)?;
-        source.read(&database, options, watch)
+        interruptible(&database, watch, || {
+            let source = Source::choose(&database, options)?;
+            source.read(&database, options, watch)
+        })
     };
     read().map_err(|error| error.in_file(path))
+}
+
+/// How often a watch is called while SQLite works.
+const OFTEN: Duration = Duration::from_millis(50);
+
+/// Calls a function, in which SQLite may work for any time: the query of a view can have more steps
+/// than anyone waits for. Another thread calls the watch meanwhile, and interrupts SQLite when it
+/// ends the reading.
+fn interruptible<T>(
+    database: &Connection,
+    watch: Watch,
+    read: impl FnOnce() -> Result<T>,
+) -> Result<T> {
+    let handle = database.get_interrupt_handle();
+    let (is_read, waits) = mpsc::channel::<()>();
+    std::thread::scope(|scope| {
+        let watching = scope.spawn(move || {
+            loop {
+                match waits.recv_timeout(OFTEN) {
+                    Err(RecvTimeoutError::Timeout) => {}
+                    _ => return None,
+                }
+                if let Err(ended) = watch(0) {
+                    handle.interrupt();
+                    return Some(ended);
+                }
+            }
+        });
+        let result = read();
+        drop(is_read);
+        let ended = watching.join().ok().flatten();
+        result.map_err(|error| ended.unwrap_or(error))
+    })
 }
 
 /// Returns the error of a database that cannot be read.
@@ -322,9 +359,16 @@ impl Source {
                 row.get::<_, Option<String>>(2)?.unwrap_or_default(),
             ))
         });
-        let Some((organization, code, definition)) = found.optional().map_err(damaged)? else {
+        let Some((organization, code, mut definition)) = found.optional().map_err(damaged)? else {
             return Ok(());
         };
+        // An extension of the standard: a text of 2019 where that of 2001 cannot say it.
+        if definition.is_empty() || definition.eq_ignore_ascii_case("undefined") {
+            let later = "SELECT definition_12_063 FROM gpkg_spatial_ref_sys WHERE srs_id = ?1";
+            let later = database.query_row(later, [self.system], |row| row.get(0));
+            // Most files have no such column.
+            definition = later.unwrap_or(definition);
+        }
         // -1 and 0 are systems that are not known.
         if matches!(self.system, -1 | 0) {
             return Ok(());

@@ -425,3 +425,53 @@ fn a_database_with_a_log_is_read_without_one() {
         "{error}"
     );
 }
+
+#[test]
+fn a_query_without_an_end_is_interrupted() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.gpkg");
+    let layer = Layer {
+        shapes: vec![line(&[[0.0; 3], [1.0; 3]])],
+        ..Layer::default()
+    };
+    write_lines(path.as_path(), &layer).unwrap();
+    let database = Connection::open(&path).unwrap();
+    database
+        .execute_batch(
+            "CREATE VIEW b AS WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM c)
+               SELECT max(x) AS n, NULL AS geom FROM c;
+             UPDATE gpkg_geometry_columns SET table_name = 'b';",
+        )
+        .unwrap();
+    drop(database);
+    let calls = std::sync::atomic::AtomicUsize::new(0);
+    let watch = |_| match calls.fetch_add(1, std::sync::atomic::Ordering::Relaxed) {
+        0 | 1 => Ok(()),
+        _ => Err(crate::error::Error::canceled()),
+    };
+    let error = read_layer_with(&path, &Options::default(), &watch).unwrap_err();
+    assert_eq!(error.kind(), crate::error::Kind::Canceled);
+}
+
+#[test]
+fn a_system_may_be_stated_by_the_later_column_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.gpkg");
+    let layer = Layer {
+        shapes: vec![line(&[[0.0; 3], [1.0; 3]])],
+        crs: Some(Crs::from_user("EPSG:25832+7837").unwrap()),
+        ..Layer::default()
+    };
+    write_lines(path.as_path(), &layer).unwrap();
+    let database = Connection::open(&path).unwrap();
+    database
+        .execute_batch(
+            "ALTER TABLE gpkg_spatial_ref_sys ADD COLUMN definition_12_063 TEXT;
+             UPDATE gpkg_spatial_ref_sys SET definition_12_063 = definition, definition = 'undefined';",
+        )
+        .unwrap();
+    drop(database);
+    let back = read(&path);
+    assert!(back.crs.unwrap().is_same(&layer.crs.unwrap()));
+    assert!(back.warnings.is_empty());
+}

@@ -10,6 +10,7 @@ use std::path::Path;
 
 use crate::data::{Value, named};
 use crate::error::{Error, Result};
+use crate::io::bytes::code_page::utf8_or_windows_1252;
 use crate::io::bytes::decimal_mark::DecimalMark;
 use crate::io::bytes::field::parse_number;
 
@@ -255,24 +256,11 @@ fn decode(bytes: &[u8], code_page: Option<&str>) -> String {
             "UTF-8" | "UTF8" | "65001"
         )
     });
-    let text = match std::str::from_utf8(bytes) {
-        Ok(text) => text.to_owned(),
-        Err(_) if utf8 => String::from_utf8_lossy(bytes).into_owned(),
-        Err(_) => bytes.iter().map(|&byte| windows_1252(byte)).collect(),
+    let text = match utf8 {
+        true => String::from_utf8_lossy(bytes).into_owned(),
+        false => utf8_or_windows_1252(bytes),
     };
     text.trim().to_owned()
-}
-
-fn windows_1252(byte: u8) -> char {
-    // 0x80 to 0x9F; the five unused codes are decoded as in Latin-1.
-    const HIGH: &str = "€\u{81}‚ƒ„…†‡ˆ‰Š‹Œ\u{8d}Ž\u{8f}\u{90}‘’“”•–—˜™š›œ\u{9d}žŸ";
-    match byte {
-        0x80..=0x9F => HIGH
-            .chars()
-            .nth(usize::from(byte) - 0x80)
-            .unwrap_or(char::from(byte)),
-        _ => char::from(byte),
-    }
 }
 
 /// Parses the number in a cell. It is NaN if the cell is empty or filled with stars (a number did
