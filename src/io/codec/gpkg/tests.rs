@@ -438,7 +438,8 @@ fn a_query_without_an_end_is_interrupted() {
     let database = Connection::open(&path).unwrap();
     database
         .execute_batch(
-            "CREATE VIEW b AS WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM c)
+            "PRAGMA foreign_keys = OFF;
+             CREATE VIEW b AS WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT x + 1 FROM c)
                SELECT max(x) AS n, NULL AS geom FROM c;
              UPDATE gpkg_geometry_columns SET table_name = 'b';",
         )
