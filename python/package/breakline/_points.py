@@ -206,12 +206,9 @@ def points(
     flag_buffer : bool
         Flag the points of the buffer as withheld.
     overwrite : bool
-        Replace a file that exists.
+        Replace files that exist.
     classes, returns, drop_withheld, bounds, boundary, thin, thin_keep, seed, crs, to_crs, require_grids,
     epoch, columns, partial, copc_resolution
-        Replace files that exist.
-    classes, returns, drop_withheld, bounds, boundary, thin, thin_keep, seed, crs, to_crs, columns, partial,
-    copc_resolution
         As for :func:`read_points`.
     threads, progress
         As for :func:`read_points`.
