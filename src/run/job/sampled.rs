@@ -115,8 +115,18 @@ mod tests {
     use super::*;
     use crate::run::job::planned_file::FileState;
     use crate::run::request::input::Input;
+    use crate::run::sources::proj::TransformOptions;
     use crate::terrain::tiles::TileLayout;
     use testkit::random::Random;
+
+    /// Points are not reprojected.
+    const AS_READ: TargetSystem = TargetSystem {
+        crs: None,
+        options: &TransformOptions {
+            require_grids: false,
+            epoch: None,
+        },
+    };
 
     /// Points along a diagonal, and half of them in one corner.
     fn crowded(count: usize) -> Vec<[f64; 3]> {
@@ -172,7 +182,7 @@ mod tests {
         let found = spreads(
             from_ref(&file),
             &request,
-            (&[0, 1, 2], None),
+            (&[0, 1, 2], AS_READ),
             average,
             &Context::default(),
         )
@@ -189,7 +199,7 @@ mod tests {
         let of_one = spreads(
             from_ref(&file),
             &request,
-            (&[2], None),
+            (&[2], AS_READ),
             average,
             &Context::default(),
         )
@@ -200,7 +210,7 @@ mod tests {
             spreads(
                 from_ref(&file),
                 &request,
-                (&[2], None),
+                (&[2], AS_READ),
                 1e6,
                 &Context::default()
             )
@@ -212,7 +222,7 @@ mod tests {
             spreads(
                 from_ref(&file),
                 &request,
-                (&[2], None),
+                (&[2], AS_READ),
                 average,
                 &Context::default()
             )
