@@ -231,8 +231,14 @@ impl<'a> Sorted<'a> {
             let high = (number + 1) as f64 * self.size + self.buffer;
             self.buffer > 0.0 && low <= x && x <= high
         };
-        let first = if is_near(own - 1) { own - 1 } else { own };
-        let last = if is_near(own + 1) { own + 1 } else { own };
+        // A buffer as wide as a tile reaches the border of the second next one.
+        let (mut first, mut last) = (own, own);
+        while is_near(first - 1) {
+            first -= 1;
+        }
+        while is_near(last + 1) {
+            last += 1;
+        }
         Ok((first..=last, own))
     }
 
