@@ -205,6 +205,8 @@ fn names_of_layers_in_windows_1252_and_with_escapes() {
     assert_eq!(read(b"\x80", "B€schung").unwrap(), 1);
     // What is no escape stays.
     for odd in ["\\U+12", "\\U+D800x", "\\U+éa"] {
-        assert_eq!(read(odd.as_bytes(), &format!("B{odd}schung")).unwrap(), 1);
+        let error = read(odd.as_bytes(), "other").unwrap_err();
+        let cure = error.cure_text().unwrap().plain();
+        assert_eq!(cure, format!("name one of B{odd}schung"));
     }
 }

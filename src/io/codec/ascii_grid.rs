@@ -28,9 +28,6 @@ use crate::io::{Destination, Watch};
 /// The value of cells without one.
 const NODATA: f64 = -9999.0;
 
-/// What some programs write before a text in UTF-8.
-const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
-
 /// Bytes within which the header ends.
 const HEADER: u64 = 1 << 12;
 
@@ -56,8 +53,7 @@ pub fn open(path: impl AsRef<Path>) -> Result<AsciiGrid> {
     let open = || {
         let mut head = Vec::new();
         File::open(path)?.take(HEADER).read_to_end(&mut head)?;
-        // Windows programs put a mark of UTF-8 before the text.
-        let (frame, nodata, lines) = header(head.strip_prefix(BYTE_ORDER_MARK).unwrap_or(&head))?;
+        let (frame, nodata, lines) = header(&head)?;
         let mut warnings = Vec::new();
         let crs = match prj::read_beside(path)? {
             Prj::Stated(crs) => crs,
