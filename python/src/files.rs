@@ -246,7 +246,7 @@ pub(crate) fn write_points<'py>(
 /// Returns a length, or an error that names the parameter.
 fn length(parameter: &str, text: &str) -> PyResult<PlanLength> {
     let wrong = |error: String| Failure(Error::usage(format!("{parameter}: {text}: {error}")));
-    Ok(text.parse().map_err(wrong)?)
+    Ok(text.parse::<PlanLength>().map_err(wrong)?)
 }
 
 const KERNELS: [(&str, Arithmetic); 3] = [
