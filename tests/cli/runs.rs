@@ -693,7 +693,7 @@ fn tables_of_a_program_are_like_a_file() {
         ("{", "EOF"),
         (
             "{\"input\": {}, \"product\": {\"verb\": \"dem\"}}",
-            "input: `files`",
+            "`files` is missing",
         ),
         (
             "{\"input\": {\"files\": \"x\"}, \"product\": [1]}",
