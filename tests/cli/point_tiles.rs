@@ -167,9 +167,18 @@ fn tiles_are_all_there_or_none() {
     run_in(&folder, &words).fails(2, &["in/0_0.las", "would replace an input"]);
     fs::write(folder.path().join("a.xyz"), "1 2 3\n4 5 6\n").unwrap();
     run_in(&folder, &["points", "a.xyz", "--tile", "5", "-o", "x"]).fails(1, &["LAS"]);
-    let degrees = las(&cloud(&mut Random(1), 50), Some(4326));
-    fs::write(folder.path().join("d.las"), degrees).unwrap();
-    run_in(&folder, &["points", "d.las", "--tile", "1km", "-o", "x"])
-        .fails(2, &["the coordinates are angles", "--t-srs"]);
+    let unknown = las(&cloud(&mut Random(1), 50), None);
+    fs::write(folder.path().join("d.las"), unknown).unwrap();
+    let words = [
+        "points",
+        "d.las",
+        "--a-srs",
+        "EPSG:4326",
+        "--tile",
+        "1km",
+        "-o",
+        "x",
+    ];
+    run_in(&folder, &words).fails(2, &["the coordinates are angles", "--t-srs"]);
     assert!(!folder.path().join("x").exists());
 }
