@@ -146,7 +146,7 @@ fn products_have_the_extensions_that_they_had() {
         (
             Product::Contours,
             &[
-                "shp", "geojson", "json", "geojsonl", "geojsons", "gpkg", "fgb",
+                "shp", "geojson", "json", "geojsonl", "geojsons", "gpkg", "fgb", "dxf",
             ],
         ),
         (Product::Heights, &["tif", "tiff", "asc", "xyz"]),

@@ -66,9 +66,9 @@ fn contours_come_back_from_each_format() {
         }
     }
     let error =
-        contours::write(&folder.path().join("c.dxf"), &mut lines().into_iter(), None).unwrap_err();
+        contours::write(&folder.path().join("c.kml"), &mut lines().into_iter(), None).unwrap_err();
     assert!(error.to_string().ends_with(
-        "c.dxf: contours are written as .shp, .geojson, .json, .geojsonl, .geojsons, .gpkg or .fgb"
+        "c.kml: contours are written as .shp, .geojson, .json, .geojsonl, .geojsons, .gpkg, .fgb or .dxf"
     ));
 }
 
