@@ -23,6 +23,7 @@ mod requests;
 mod runs;
 mod spatial;
 mod surface;
+mod terrain_tiles;
 mod triangle;
 mod volume;
 mod work;
@@ -53,6 +54,9 @@ mod _breakline {
 
     #[pymodule_export]
     use super::spatial::{CubicValues, Tessellation, Values, convex_hull, nested_lists};
+
+    #[pymodule_export]
+    use super::terrain_tiles::terrain_tiles;
 
     #[pymodule_export]
     use super::triangle::{TriangleSwitches, triangulate_arrays};

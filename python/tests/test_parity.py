@@ -108,7 +108,7 @@ def test_a_verb_is_a_function_and_its_options_are_parameters(verb):
 def test_parameters_are_options(verb):
     known = {parameter_name(verb, option["name"]) for option in [*VERBS[verb]["options"], *PROGRAM["options"]]}
     known |= {"points", "inputs", "path", "progress"}
-    if verb in WRITTEN or verb in ("check", "volume", "compare", "drape", "profile", "sample", "accuracy"):
+    if verb in WRITTEN or verb in ("check", "volume", "compare", "drape", "profile", "sample", "accuracy", "terrain_tiles"):
         known |= {"bounds"}
     if verb in ("volume", "compare"):
         known |= {"a", "b"}

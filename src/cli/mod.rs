@@ -154,6 +154,7 @@ fn dispatch(verb: &Verb, how: &ConsoleArgs, console: &Console) -> Result<Exit> {
         Verb::Compare(args) => verbs::compare::run(args, console),
         Verb::Profile(args) => verbs::profile::run(args, console),
         Verb::Drape(args) => verbs::drape::run(args, console),
+        Verb::TerrainTiles(args) => verbs::terrain_tiles::run(args, console),
         Verb::Sample(args) => verbs::sample::run(args, console),
         Verb::Accuracy(args) => verbs::accuracy::run(args, console),
         Verb::Crs(args) => verbs::crs::run(args, console),

@@ -8,6 +8,7 @@
 //! `crs-definitions`, and names for a `.prj` follow a rule.
 
 mod definition;
+mod ellipsoid;
 mod esri;
 mod geokeys;
 mod heights;
@@ -21,6 +22,7 @@ mod wkt_read;
 mod wkt_tree;
 mod wkt_write;
 
+pub(crate) use ellipsoid::{SEMI_AXES, geocentric};
 pub use geokeys::{GeoKeys, RasterType};
 pub use heights::Heights;
 pub use system::{Crs, CrsKind};

@@ -14,6 +14,7 @@
 //! | rasters | [`Grid`], georeferenced by its [`Frame`] | [`BlockSource`], read by [`Window`] |
 //! | colors of heights | [`ColorRamp`], [`Colors`] | |
 //! | triangles | [`Triangles`] as a file lists them, [`Mesh`] linked, [`SurfaceFacts`] counted | [`Surface`], also [`WithoutLines`] |
+//! | levels of triangles, in squares of the earth | [`TerrainTile`], at a [`TilePosition`] of a [`Tiling`] | |
 //! | a box | [`Bounds`] | |
 //!
 //! # Conventions
@@ -49,6 +50,7 @@ mod same_faces;
 mod shape;
 mod surface;
 mod surface_facts;
+mod terrain_tile;
 mod triangles;
 mod without_lines;
 
@@ -81,5 +83,6 @@ pub(crate) use shape::{doubled_area, oriented, polygons};
 pub use surface::{BaseFace, Census, EdgeKind, Face, FaceAcross, LineEdges, Surface};
 pub(crate) use surface::{across, bounds_of_faces, corners, faces, faces_under, map_batches};
 pub use surface_facts::SurfaceFacts;
+pub use terrain_tile::{TerrainTile, TilePosition, Tiling};
 pub use triangles::{LinkFlaw, Triangles};
 pub use without_lines::WithoutLines;

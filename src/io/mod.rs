@@ -14,6 +14,7 @@
 //! | read or write Triangle's files: points and segments in the plane, and their triangulation | | [`triangle::read`], [`triangle::write`] |
 //! | read or write triangulations in space: files of TetGen, MEDIT, VTK | | [`tetgen::read`], [`tetgen::write`] |
 //! | write contours | [`contours::write`] | [`shapefile::write_contours`], [`geojson::write_contours`], [`gpkg::write_contours`], [`flatgeobuf::write_contours`] |
+//! | read or write terrain tiles for viewers of the earth | | [`quantized_mesh::decode`], [`quantized_mesh::encode`]; [`tiles_3d::content`] |
 //! | write other shapes | | [`shapefile::write_layer`] |
 //!
 //! One table lists all formats, and what can be read and written in each: [`formats`].
@@ -49,16 +50,16 @@ pub use bytes::contain::is_contained;
 pub(crate) use bytes::csv::csv_field;
 pub(crate) use bytes::field::no_such_field;
 pub use bytes::mapped;
-pub(crate) use bytes::output::Temporary;
 pub use bytes::output::{
     Abandoned, Destination, Output, OutputSet, abandon_outputs, is_standard_output, is_stream,
     probe, remove_abandoned, require_absent,
 };
+pub(crate) use bytes::output::{OutputFolder, Temporary};
 pub use bytes::watch::Watch;
 pub(crate) use codec::prj;
 pub use codec::{
-    ascii_grid, flatgeobuf, gdal, geojson, geotiff, gpkg, las, png, ramp, shapefile, tetgen, text,
-    triangle,
+    ascii_grid, flatgeobuf, gdal, geojson, geotiff, gpkg, las, png, quantized_mesh, ramp, shapefile,
+    tetgen, text, tiles_3d, triangle,
 };
 pub use fronts::{contours, layer, mesh, points, profiles, raster};
 pub use options::cut::OnDamage;

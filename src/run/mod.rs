@@ -24,6 +24,7 @@
 //! | cut and fill above another surface or a level | [`VolumeOptions`] | [`volume()`] | [`VolumeProduct`] |
 //! | lines with the heights of a surface | [`DrapeOptions`] | [`drape`] | [`DrapeProduct`] |
 //! | heights along lines and across them | [`ProfileOptions`] | [`profile`] | [`ProfileProduct`] |
+//! | levels of tiles for viewers of the earth | [`TerrainTilesOptions`] | [`write_terrain_tiles`] | [`TerrainTilesReport`] |
 //! | vertical accuracy by checkpoints | [`AccuracyOptions`] | [`accuracy()`] | [`AccuracyProduct`] |
 //! | find flaws | [`SurfaceRequest`] | [`check()`] | [`CheckProduct`] |
 //! | count what is in a file | a path | [`facts()`] | [`Facts`] |
@@ -145,6 +146,9 @@ pub use products::station_format::StationFormat;
 pub use products::surface::{
     Model, Source, SurfaceProduct, SurfaceRequest, surface, surface_for, triangles, triangles_for,
     write_mesh,
+};
+pub use products::terrain_tiles::{
+    LevelReport, TerrainFormat, TerrainTilesOptions, TerrainTilesReport, write_terrain_tiles,
 };
 pub use products::tin::{BuildReport, ReplacedPoints, TinRequest};
 pub use products::volume::{

@@ -25,6 +25,7 @@
 //! | triangles from tiles | the contours of the whole | [`contour::parts`] |
 //! | a surface in parts | a DEM of the whole | [`DemOfParts`] |
 //! | a surface and a frame | slope or aspect of its faces, in cells | [`FaceSlopes`] of a [`GradientMap`] |
+//! | a surface and a tiling of the earth | levels of tiles that fit together | [`Pyramid`] |
 //! | any surface | a check that it is sound | [`surface_flaws`], [`shape_flaws`]; for a TIN also [`Tin::check`] |
 //!
 //! A surface is anything that implements [`Surface`](crate::data::Surface): a [`Tin`], a
@@ -77,6 +78,7 @@ mod nesting;
 mod overlay;
 mod peel;
 mod point_rim;
+mod pyramid;
 mod rasterize;
 mod regions;
 mod ridges;
@@ -124,6 +126,7 @@ pub use lines::{
 pub(crate) use near_lines::NearLines;
 pub(crate) use nesting::Nesting;
 pub(crate) use point_rim::deciding;
+pub use pyramid::{Level, Pyramid, PyramidRule, TileReport};
 pub use rasterize::{Canvas, CanvasBlock, CellValue, Dem, DemOfParts, GradientMap, GradientSource};
 pub use rim_rule::RimRule;
 pub(crate) use sample::along_curve;

@@ -28,6 +28,7 @@ mod runs;
 mod sampling;
 mod simplify;
 mod systems;
+mod terrain_tiles;
 mod thinning;
 mod usage;
 mod volumes;

@@ -27,6 +27,7 @@ fn help_goes_to_stdout_and_tells_each_verb_with_an_example() {
         "compare",
         "profile",
         "drape",
+        "terrain-tiles",
         "sample",
         "accuracy",
         "check",

@@ -42,6 +42,8 @@ const NOT_IN_TILES: &[(&str, &str)] = &[
     ("FlatTriangles", "of surfaces of lines; tiles need points"),
     ("RidgesAdded", "tiles refuse --add-ridges"),
     ("Simplified", "of `tin`, in one piece only"),
+    ("HeightsAboveEllipsoid", "of `terrain-tiles`"),
+    ("BeyondBound", "of `terrain-tiles`"),
     ("DelaunayUnchecked", "of `check`"),
     ("RegionAreasUnused", "of `triangulate`"),
     ("SeedUnused", "of `triangulate`"),

@@ -21,6 +21,7 @@ ruggedness          :func:`roughness`, :func:`tri`, :func:`tpi`
 cut and fill        :func:`volume`
 a difference        :func:`compare`
 along lines         :func:`profile`, :func:`drape`
+web globes          :func:`terrain_tiles`
 heights at points   :func:`sample`
 accuracy            :func:`accuracy`
 flaws               :meth:`Tin.check`, :func:`check`
@@ -62,6 +63,7 @@ from ._relief import Relief, color_relief
 from ._results import Contour, Contours, Raster
 from ._runs import run
 from ._samples import Accuracy, SetAccuracy, accuracy, sample
+from ._terrain import TerrainLevel, terrain_tiles
 from ._tin import EDGE_KINDS, Flaw, Notice, Tin, tin
 from ._verbs import (
     SpaceTriangulation,
@@ -109,6 +111,7 @@ __all__ = [
     "SetAccuracy",
     "SpaceTriangulation",
     "Task",
+    "TerrainLevel",
     "Tin",
     "Triangulation",
     "UnsupportedError",
@@ -138,6 +141,7 @@ __all__ = [
     "sample",
     "simplify",
     "slope",
+    "terrain_tiles",
     "tin",
     "tpi",
     "tri",

@@ -85,6 +85,7 @@ const OF_POINTS: &[&str] = &[
     "compare",
     "profile",
     "drape",
+    "terrain-tiles",
     "sample",
     "accuracy",
     "check",

@@ -223,6 +223,7 @@ mod tests {
                 "compare",
                 "profile",
                 "drape",
+                "terrain-tiles",
                 "sample",
                 "accuracy",
                 "check",

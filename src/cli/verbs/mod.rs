@@ -22,6 +22,7 @@ mod relief;
 pub(super) mod run;
 pub(super) mod sample;
 pub(super) mod shell;
+pub(super) mod terrain_tiles;
 mod tin;
 pub(super) mod triangulate;
 mod triangulate_space;

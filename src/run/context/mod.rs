@@ -105,6 +105,8 @@ pub enum Stage {
     FindingContours,
     /// Contours are drawn and written, counted in edges of contours.
     DrawingContours,
+    /// Terrain tiles are made and written, counted in tiles.
+    WritingTiles,
     /// Files are written, without a count.
     Writing,
     /// Heights are computed, counted in positions.
@@ -137,6 +139,7 @@ impl Stage {
             Stage::ShadingCells => "shading cells",
             Stage::FindingContours => "finding contours",
             Stage::DrawingContours => "drawing contours",
+            Stage::WritingTiles => "writing tiles",
             Stage::Writing => "writing",
             Stage::ComputingHeights => "computing heights",
             Stage::ComputingVolumes => "computing volumes",

@@ -210,6 +210,20 @@ pub enum Notice {
     },
     /// Vertices were added on ridges and valleys; with their number.
     RidgesAdded(usize),
+    /// Heights are used as if they were above the ellipsoid; with the EPSG code of their system, if
+    /// it is stated.
+    HeightsAboveEllipsoid(Option<u32>),
+    /// Heights that are further from the triangles of a level of tiles than its bound.
+    BeyondBound {
+        /// The level.
+        level: u8,
+        /// How many heights.
+        count: usize,
+        /// The largest distance, in meters.
+        largest: f64,
+        /// The bound, in meters.
+        bound: f64,
+    },
     /// The surface was simplified, and measured against all heights that were given.
     Simplified {
         /// The vertices that are left.
@@ -562,6 +576,8 @@ impl Notice {
             | Notice::AllClassesUsed
             | Notice::HeightsOfOthers(..)
             | Notice::Transform(_)
+            | Notice::HeightsAboveEllipsoid(_)
+            | Notice::BeyondBound { .. }
             | Notice::PartForLinear
             | Notice::PolygonsOutside(..)
             | Notice::FacesOverlap(..)

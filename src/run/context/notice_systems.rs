@@ -54,3 +54,33 @@ pub(super) fn no_system() -> &'static str {
 pub(super) fn different_units(plan: &str, height: &str) -> String {
     format!("x and y are in units of the {plan}, heights in units of the {height}")
 }
+
+pub(super) fn above_ellipsoid(code: Option<u32>) -> Wording {
+    let what = match code {
+        Some(code) => format!("heights are those of EPSG:{code}, which is not the ellipsoid"),
+        None => "no system of heights is stated".to_owned(),
+    };
+    wording![
+        what,
+        ": they are used as heights above the ellipsoid, so that viewers show the surface too low or \
+         too high, in most places by 10 to 60 m; state the height of the geoid there with ",
+        Setting::VerticalOffset.number("METERS")
+    ]
+}
+
+pub(super) fn beyond_bound(level: u8, count: usize, [largest, bound]: [f64; 2]) -> Wording {
+    let heights = if count == 1 {
+        "height is"
+    } else {
+        "heights are"
+    };
+    wording![
+        format!(
+            "level {level}: {count} {heights} further from the triangles than {bound:.3} m, at most \
+             {largest:.3} m: 32767 steps along a tile are too few; pass a larger "
+        ),
+        Setting::MaxError,
+        " or ",
+        Setting::MaxLevel
+    ]
+}

@@ -9,7 +9,8 @@ use super::notice_lists::{
     sections_cross,
 };
 use super::notice_systems::{
-    different_units, first_of_bands, heights_of_others, no_system, reassigned, system_of_others,
+    above_ellipsoid, beyond_bound, different_units, first_of_bands, heights_of_others, no_system,
+    reassigned, system_of_others,
 };
 use super::units::{Quantity, bytes, neat, number};
 use crate::data::Bounds;
@@ -204,6 +205,10 @@ fn text(notice: &Notice) -> Wording {
         Notice::BreaklinesBeyond(reach) => breaklines_beyond(reach),
         Notice::FlatTriangles { count, share, has_ridges } => {
             flat_triangles(*count, *share, *has_ridges)
+        }
+        Notice::HeightsAboveEllipsoid(code) => above_ellipsoid(*code),
+        Notice::BeyondBound { level, count, largest, bound } => {
+            beyond_bound(*level, *count, [*largest, *bound])
         }
         Notice::Simplified { vertices, heights, bound, largest, root_mean_square, line_vertices } => {
             simplified([*vertices, *heights], [bound, largest, root_mean_square], *line_vertices).into()

@@ -25,6 +25,7 @@ pub(crate) mod sample;
 pub(super) mod simplified;
 pub(crate) mod station_format;
 pub(crate) mod surface;
+pub(crate) mod terrain_tiles;
 mod thinned;
 pub(crate) mod tin;
 mod together;

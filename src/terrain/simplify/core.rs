@@ -239,6 +239,17 @@ fn triangulated<'a>(
     Ok(Some(mesh))
 }
 
+/// Returns the sites that are needed besides those that stay, in one block.
+pub(super) fn choose_all(
+    sites: &Sites,
+    stay: &[u32],
+    bound: f64,
+    cancel: &AtomicBool,
+) -> Result<Vec<u32>, Refused> {
+    let all: Vec<u32> = (0..sites.count() as u32).collect();
+    choose_in(sites, &all, stay, None, bound, cancel)
+}
+
 /// Returns the sites of a block that are needed for these.
 fn choose_in(
     sites: &Sites,

@@ -29,7 +29,7 @@ use std::sync::atomic::AtomicBool;
 
 use rustc_hash::FxHashSet;
 
-use self::core::{Refused, choose};
+use self::core::{Refused, choose, choose_all};
 use self::intake::Intake;
 use self::lines::{EdgeRole, Lines};
 use self::sites::Sites;
@@ -146,6 +146,25 @@ fn simplified(
         SimplifyLimit::MaxError(bound) => run.within(bound),
         SimplifyLimit::Target(target) => run.of_vertices(target as usize),
     }
+}
+
+/// Chooses vertices among positions that are sorted by x, then y, each of which is there once: those
+/// that `stay`, the corners of the hull, and as few others as are found such that no height is
+/// further than the bound from the Delaunay triangulation of all that are chosen. Returns their
+/// numbers, in ascending order.
+///
+/// # Errors
+/// If there are too many positions, or the run is canceled.
+pub(super) fn choose_around(
+    positions: Vec<[f64; 3]>,
+    stay: &[u32],
+    bound: f64,
+    cancel: &AtomicBool,
+) -> Result<Vec<u32>> {
+    let chosen = Sites::scattered(positions)
+        .map_err(Refused::from)
+        .and_then(|sites| choose_all(&sites, stay, bound, cancel));
+    chosen.map_err(not_chosen)
 }
 
 impl SimplifyRule {

@@ -18,6 +18,7 @@ mod sample;
 mod surface;
 mod switches;
 mod systems;
+mod terrain_tiles;
 mod tiles;
 mod verbs;
 mod volume;
@@ -49,6 +50,7 @@ pub(crate) use sample::SampleArgs;
 pub(crate) use surface::{CrossingZArg, DuplicatesArg, OnCrossingArg, SurfaceArgs};
 pub(crate) use switches::expand_switches;
 pub(crate) use systems::SystemArgs;
+pub(crate) use terrain_tiles::{TerrainFormatArg, TerrainTilesArgs, TilingArg};
 pub(crate) use tiles::{MemoryArgs, TileArgs};
 pub(crate) use verbs::{
     CheckArgs, DemArgs, DemoArgs, DescribeArgs, FrameArgs, HillshadeArgs, InfoArgs, LimitArgs,
@@ -80,6 +82,7 @@ Examples:
   breakline volume ground.ply --plane 104.5
   breakline profile ground.ply design.ply --along axis.shp -o profile.svg
   breakline drape ground.ply --lines roads.shp -o roads3d.shp
+  breakline terrain-tiles ground.ply --vertical-offset 47.3 -o tiles
   breakline demo
 
 `breakline VERB --help` lists the options of a verb, with defaults and an example.";
@@ -143,6 +146,7 @@ pub(crate) enum Verb {
     Compare(CompareArgs),
     Profile(ProfileArgs),
     Drape(DrapeArgs),
+    TerrainTiles(TerrainTilesArgs),
     Sample(SampleArgs),
     Accuracy(AccuracyArgs),
     Check(CheckArgs),

@@ -1,11 +1,13 @@
-//! Output files that appear complete or not at all, alone or as a set.
+//! Output files that appear complete or not at all, alone, as a set, or as a folder.
 
 mod file;
+mod folder;
 mod set;
 mod target;
 mod temporary;
 
 pub use file::{Output, is_standard_output, is_stream, probe, remove_abandoned, require_absent};
+pub(crate) use folder::OutputFolder;
 pub use set::{Destination, OutputSet};
 pub(crate) use temporary::Temporary;
 pub use temporary::{Abandoned, abandon_outputs};

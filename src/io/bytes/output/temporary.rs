@@ -145,6 +145,22 @@ impl Temporary {
         Ok(Temporary { path })
     }
 
+    /// Creates a hidden folder next to `target`, which can become it.
+    pub(super) fn folder_beside(target: &Path) -> io::Result<Self> {
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(PREFIX);
+        // Others may read what it becomes: only the umask limits who.
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
+        let mut all = all();
+        let path = builder.tempdir_in(folder_of(target))?.keep();
+        all.push(Listed {
+            path: path.clone(),
+            what: What::Folder,
+        });
+        Ok(Temporary { path })
+    }
+
     /// Returns the path of the file or the folder.
     pub(crate) fn path(&self) -> &Path {
         &self.path

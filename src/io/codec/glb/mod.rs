@@ -9,7 +9,7 @@ mod read;
 mod write;
 
 pub(crate) use read::read;
-pub(crate) use write::write;
+pub(crate) use write::{head, normals, write};
 
 /// The first bytes, and the types of the two chunks.
 const MAGIC: &[u8; 4] = b"glTF";
@@ -18,10 +18,10 @@ const JSON: &[u8; 4] = b"JSON";
 const BIN: &[u8; 4] = b"BIN\0";
 
 /// Numbers of glTF: 32-bit floats, bytes, 16-bit and 32-bit numbers.
-const FLOAT: u64 = 5126;
+pub(crate) const FLOAT: u64 = 5126;
 const BYTE: u64 = 5121;
 const SHORT: u64 = 5123;
-const INT: u64 = 5125;
+pub(crate) const INT: u64 = 5125;
 
 /// The name in `extras` under which the origin and the coordinate system are.
 const EXTRAS: &str = "breakline";

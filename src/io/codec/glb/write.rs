@@ -35,27 +35,10 @@ pub(crate) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> R
         }
     }
     let arrays = Arrays::of(mesh)?;
-    let mut text = description(mesh, &arrays, &local, extent, crs).to_string();
-    while !text.len().is_multiple_of(4) {
-        text.push(' ');
-    }
-    let total = 12 + 8 + text.len() as u64 + 8 + arrays.length;
-    let sizes = [text.len() as u64, arrays.length, total].map(u32::try_from);
-    let [Ok(text_size), Ok(bin_size), Ok(total)] = sizes else {
-        return Err(Error::limit(format!(
-            "{total} bytes; a GLB file has up to {}",
-            u32::MAX
-        )));
-    };
+    let text = description(mesh, &arrays, &local, extent, crs).to_string();
+    let head = head(text, arrays.length)?;
     let mut output = target.create()?;
-    output.write_all(MAGIC)?;
-    output.write_all(&VERSION.to_le_bytes())?;
-    output.write_all(&total.to_le_bytes())?;
-    output.write_all(&text_size.to_le_bytes())?;
-    output.write_all(JSON)?;
-    output.write_all(text.as_bytes())?;
-    output.write_all(&bin_size.to_le_bytes())?;
-    output.write_all(BIN)?;
+    output.write_all(&head)?;
     write_arrays(&mut output, mesh, &local, &bounds)?;
     target.put(output)?;
     let loss = Loss::of(mesh, |p| local.read_back(p));
@@ -63,6 +46,34 @@ pub(crate) fn write(target: Destination, mesh: &Listing, crs: Option<&Crs>) -> R
         notes: loss.notes("32-bit floats", origin),
         ..Remarks::default()
     })
+}
+
+/// Returns the bytes of a file before those of its arrays, of which there are `length`.
+///
+/// # Errors
+/// If the file would be too large.
+pub(crate) fn head(mut text: String, length: u64) -> Result<Vec<u8>> {
+    while !text.len().is_multiple_of(4) {
+        text.push(' ');
+    }
+    let total = 12 + 8 + text.len() as u64 + 8 + length;
+    let sizes = [text.len() as u64, length, total].map(u32::try_from);
+    let [Ok(text_size), Ok(bin_size), Ok(total)] = sizes else {
+        return Err(Error::limit(format!(
+            "{total} bytes; a GLB file has up to {}",
+            u32::MAX
+        )));
+    };
+    let mut head = Vec::with_capacity(28 + text.len());
+    head.extend(MAGIC);
+    head.extend(VERSION.to_le_bytes());
+    head.extend(total.to_le_bytes());
+    head.extend(text_size.to_le_bytes());
+    head.extend(JSON);
+    head.extend(text.as_bytes());
+    head.extend(bin_size.to_le_bytes());
+    head.extend(BIN);
+    Ok(head)
 }
 
 /// Where positions are counted from.
@@ -198,7 +209,7 @@ fn write_arrays(
 ) -> Result<()> {
     let floats = |p: [f32; 3]| row_of(p.map(f32::to_le_bytes));
     write_rows(output, mesh.vertices().map(|p| floats(local.floats(p))))?;
-    let normals = normals(mesh).into_iter();
+    let normals = normals(mesh.vertex_count, mesh.faces().zip(mesh.triangles())).into_iter();
     write_rows(
         output,
         normals.map(|[x, y, z]| floats([x, z, -y].map(|c| c as f32))),
@@ -218,10 +229,14 @@ fn colors(bounds: &Bounds) -> Colors {
         .over(Some(range), ColorMatch::Linear)
 }
 
-/// Returns the normal of each vertex: those of its faces, by their areas.
-fn normals(mesh: &Listing) -> Vec<[f64; 3]> {
-    let mut normals = vec![[0.0; 3]; mesh.vertex_count];
-    for (face, [a, b, c]) in mesh.faces().zip(mesh.triangles()) {
+/// Returns the normal of each of `count` vertices: those of its faces, by their areas. A face is
+/// given with its corners and their positions.
+pub(crate) fn normals(
+    count: usize,
+    faces: impl Iterator<Item = ([u32; 3], [[f64; 3]; 3])>,
+) -> Vec<[f64; 3]> {
+    let mut normals = vec![[0.0; 3]; count];
+    for (face, [a, b, c]) in faces {
         let [u, v] = [b, c].map(|p| [0, 1, 2].map(|k| p[k] - a[k]));
         let turn = |k: usize| {
             let (i, j) = ((k + 1) % 3, (k + 2) % 3);

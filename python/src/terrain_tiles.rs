@@ -1,0 +1,87 @@
+//! Levels of terrain tiles, in a folder.
+
+use std::path::PathBuf;
+
+use breakline::data::Tiling;
+use breakline::run::{self, TerrainFormat, TerrainTilesOptions};
+use breakline::terrain::PyramidRule;
+use pyo3::prelude::*;
+
+use crate::errors::Result;
+use crate::requests;
+use crate::surface::Surface;
+use crate::work::{self, Call};
+
+/// A level in Python: its number, its bound and the largest distance, and the numbers of tiles,
+/// bytes, vertices, triangles, heights, and heights beyond the bound.
+type Level = (u8, [f64; 2], [u64; 6]);
+
+/// The options: format, tiling, bound, finest level, height around the surface, what is added to
+/// heights, and true if tiles are not compressed.
+type Options<'py> = (
+    &'py str,
+    &'py str,
+    Option<f64>,
+    Option<u8>,
+    Option<f64>,
+    Option<f64>,
+    bool,
+);
+
+/// Writes a surface as levels of terrain tiles.
+#[pyfunction]
+pub(crate) fn terrain_tiles(
+    py: Python<'_>,
+    surface: PyRef<'_, Surface>,
+    options: Options<'_>,
+    folder: (PathBuf, bool),
+    call: Call,
+) -> PyResult<Vec<Level>> {
+    let (format, tiling, max_error, finest, fill, vertical_offset, plain) = options;
+    let options = TerrainTilesOptions {
+        format: requests::choose(
+            "format",
+            format,
+            &[
+                ("quantized-mesh", TerrainFormat::QuantizedMesh),
+                ("3dtiles", TerrainFormat::Tiles3d),
+            ],
+        )?,
+        rule: PyramidRule {
+            tiling: requests::choose(
+                "tiling",
+                tiling,
+                &[
+                    ("geographic", Tiling::Geographic),
+                    ("mercator", Tiling::WebMercator),
+                ],
+            )?,
+            finest,
+            max_error,
+            fill,
+        },
+        vertical_offset,
+        plain,
+        name: None,
+    };
+    let surface = surface.product();
+    let (target, overwrite) = folder;
+    let report = work::run(py, &call, |context| -> Result<_> {
+        Ok(run::write_terrain_tiles(
+            &surface, &options, &target, overwrite, context,
+        )?)
+    })?;
+    let level = |level: &run::LevelReport| {
+        let sums = &level.sums;
+        let counts = [
+            level.tiles as u64,
+            level.bytes,
+            sums.vertices as u64,
+            sums.triangles as u64,
+            sums.heights as u64,
+            sums.beyond as u64,
+        ];
+        (level.level, [level.bound, sums.largest], counts)
+    };
+    Ok(report.levels.iter().map(level).collect())
+}

@@ -1,0 +1,155 @@
+use super::{SHORT, decode, encode};
+use crate::crs::{SEMI_AXES, geocentric};
+use crate::data::{TerrainTile, TilePosition, Tiling};
+use testkit::random::Random;
+
+/// Two triangles over a tile.
+fn square(level: u8) -> TerrainTile {
+    let all = TerrainTile::STEPS;
+    TerrainTile {
+        at: TilePosition {
+            level,
+            column: 1,
+            row: 0,
+        },
+        step: 0.25,
+        lowest: -3,
+        vertices: vec![[0, 0, 5], [all, 0, 0], [0, all, 9], [all, all, all]],
+        triangles: vec![[0, 1, 2], [2, 1, 3]],
+    }
+}
+
+/// A strip of triangles along the south of a tile.
+fn strip(count: usize) -> TerrainTile {
+    let mut random = Random(count as u64);
+    let vertices: Vec<[u16; 3]> = (0..count)
+        .map(|i| {
+            let steps = |random: &mut Random| random.below(32_768) as u16;
+            [(i % 32_768) as u16, steps(&mut random), steps(&mut random)]
+        })
+        .collect();
+    let triangles = (2..count as u32).map(|v| [v - 2, v - 1, v]).collect();
+    TerrainTile {
+        vertices,
+        triangles,
+        ..square(3)
+    }
+}
+
+#[test]
+fn a_tile_comes_back() {
+    for tile in [
+        square(0),
+        square(9),
+        strip(3),
+        strip(1000),
+        strip(SHORT),
+        strip(SHORT + 1),
+    ] {
+        let read = decode(&encode(&tile, Tiling::Geographic)).unwrap();
+        assert_eq!(read.vertices, tile.vertices);
+        assert_eq!(read.triangles, tile.triangles);
+        assert_eq!(read.range, tile.range());
+        for (vertex, steps) in (0..).zip(&tile.vertices) {
+            assert_eq!(read.height(vertex), tile.height(steps[2]));
+        }
+    }
+    let read = decode(&encode(&square(2), Tiling::WebMercator)).unwrap();
+    assert_eq!(
+        read.borders,
+        [vec![0, 2], vec![0, 1], vec![1, 3], vec![2, 3]]
+    );
+}
+
+#[test]
+fn vertices_are_put_in_the_order_of_their_use() {
+    let mut tile = square(4);
+    tile.triangles = vec![[3, 2, 1], [2, 0, 1]];
+    let read = decode(&encode(&tile, Tiling::Geographic)).unwrap();
+    let position = |mesh: &[[u16; 3]], face: [u32; 3]| face.map(|v| mesh[v as usize]);
+    let before: Vec<_> = tile
+        .triangles
+        .iter()
+        .map(|&f| position(&tile.vertices, f))
+        .collect();
+    let after: Vec<_> = read
+        .triangles
+        .iter()
+        .map(|&f| position(&read.vertices, f))
+        .collect();
+    assert_eq!(before, after);
+}
+
+/// What the header promises, judged by its meaning: the sphere is around all vertices, and from
+/// where the horizon point is hidden by the ellipsoid, so is each vertex.
+#[test]
+fn what_the_header_promises_holds() {
+    let mut random = Random(8);
+    for level in 0..16 {
+        let tile = square(level);
+        let bytes = encode(&tile, Tiling::Geographic);
+        let double = |k: usize| f64::from_le_bytes(bytes[k..k + 8].try_into().unwrap());
+        let triple = |k: usize| [double(k), double(k + 8), double(k + 16)];
+        let (center, radius, horizon) = (triple(32), double(56), triple(64));
+        let places: Vec<[f64; 3]> = tile
+            .vertices
+            .iter()
+            .map(|&v| geocentric(tile.position(Tiling::Geographic, v)))
+            .collect();
+        let off = |p: &[f64; 3]| {
+            (0..3)
+                .map(|k| (p[k] - center[k]).powi(2))
+                .sum::<f64>()
+                .sqrt()
+        };
+        assert!(places.iter().all(|p| off(p) <= radius * (1.0 + 1e-12)));
+        // On the unit sphere, a point is hidden if it is beyond the tangent plane and in its cone.
+        let is_hidden = |eye: [f64; 3], p: [f64; 3]| {
+            let dot = |a: [f64; 3], b: [f64; 3]| (0..3).map(|k| a[k] * b[k]).sum::<f64>();
+            let to = [0, 1, 2].map(|k| p[k] - eye[k]);
+            let beyond = dot(eye, eye) - 1.0;
+            let along = -dot(to, eye);
+            along > beyond && along * along > beyond * dot(to, to)
+        };
+        let scaled: Vec<[f64; 3]> = places
+            .iter()
+            .map(|p| [0, 1, 2].map(|k| p[k] / SEMI_AXES[k] * (1.0 - 1e-9)))
+            .collect();
+        for _ in 0..500 {
+            let eye = [0; 3].map(|_| 6.0 * random.unit() - 3.0);
+            let length = eye.iter().map(|c| c * c).sum::<f64>().sqrt();
+            if length > 1.001 && is_hidden(eye, horizon) {
+                assert!(
+                    scaled.iter().all(|&p| is_hidden(eye, p)),
+                    "level {level} from {eye:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn damaged_tiles_are_refused_without_a_panic() {
+    let mut random = Random(77);
+    let good = encode(&strip(200), Tiling::Geographic);
+    for length in 0..good.len() {
+        assert!(decode(&good[..length]).is_err(), "{length}");
+    }
+    for _ in 0..2000 {
+        let mut bad = good.clone();
+        for _ in 0..1 + random.below(4) {
+            let at = random.index(bad.len());
+            bad[at] = random.bits() as u8;
+        }
+        if let Ok(read) = decode(&bad) {
+            let count = read.vertices.len() as u32;
+            assert!(read.triangles.iter().flatten().all(|&v| v < count));
+        }
+    }
+    assert!(
+        decode(&[0x1f, 0x8b, 8])
+            .unwrap_err()
+            .to_string()
+            .contains("gzip")
+    );
+}

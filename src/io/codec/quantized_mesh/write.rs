@@ -1,0 +1,108 @@
+//! Writing a tile.
+
+use super::SHORT;
+use super::header::Header;
+use crate::data::{TerrainTile, Tiling};
+
+/// Returns the bytes of a tile, which are not compressed.
+///
+/// Vertices are in the order of their first use by a triangle, as [`TerrainTile`]s of a pyramid
+/// have them; others are put into this order.
+pub fn encode(tile: &TerrainTile, tiling: Tiling) -> Vec<u8> {
+    let (order, triangles) = by_first_use(tile);
+    let vertices: Vec<[u16; 3]> = order.iter().map(|&v| tile.vertices[v as usize]).collect();
+    let mut bytes = Vec::new();
+    header(&Header::of(tile, tiling), &mut bytes);
+    let count = vertices.len() as u32;
+    bytes.extend(count.to_le_bytes());
+    for axis in 0..3 {
+        let mut before = 0_i32;
+        for vertex in &vertices {
+            let value = i32::from(vertex[axis]);
+            let difference = value - before;
+            before = value;
+            // Small numbers whatever the sign.
+            let folded = (difference << 1) ^ (difference >> 31);
+            bytes.extend((folded as u16).to_le_bytes());
+        }
+    }
+    let is_long = vertices.len() > SHORT;
+    let unit = if is_long { 4 } else { 2 };
+    while !bytes.len().is_multiple_of(unit) {
+        bytes.push(0);
+    }
+    let number = |value: u32, bytes: &mut Vec<u8>| match is_long {
+        true => bytes.extend(value.to_le_bytes()),
+        false => bytes.extend((value as u16).to_le_bytes()),
+    };
+    bytes.extend((triangles.len() as u32).to_le_bytes());
+    let mut next = 0;
+    for corner in triangles.iter().flatten() {
+        number(next - corner, &mut bytes);
+        next += u32::from(*corner == next);
+    }
+    for border in borders(&vertices) {
+        bytes.extend((border.len() as u32).to_le_bytes());
+        border.iter().for_each(|&v| number(v, &mut bytes));
+    }
+    bytes
+}
+
+fn header(header: &Header, bytes: &mut Vec<u8>) {
+    let doubles = |values: &[f64], bytes: &mut Vec<u8>| {
+        values
+            .iter()
+            .for_each(|value| bytes.extend(value.to_le_bytes()));
+    };
+    doubles(&header.center, bytes);
+    for height in header.range {
+        bytes.extend((height as f32).to_le_bytes());
+    }
+    let (center, radius) = header.sphere;
+    doubles(&center, bytes);
+    doubles(&[radius], bytes);
+    doubles(&header.horizon, bytes);
+}
+
+/// Returns the vertices in the order of their first use, and the triangles with their new numbers.
+/// Vertices without a triangle come last.
+fn by_first_use(tile: &TerrainTile) -> (Vec<u32>, Vec<[u32; 3]>) {
+    let mut numbers = vec![u32::MAX; tile.vertices.len()];
+    let mut order = Vec::with_capacity(tile.vertices.len());
+    let mut number_of = |vertex: u32| {
+        let number = &mut numbers[vertex as usize];
+        if *number == u32::MAX {
+            *number = order.len() as u32;
+            order.push(vertex);
+        }
+        *number
+    };
+    let triangles = tile
+        .triangles
+        .iter()
+        .map(|corners| corners.map(&mut number_of))
+        .collect();
+    (0..tile.vertices.len() as u32).for_each(|vertex| {
+        number_of(vertex);
+    });
+    (order, triangles)
+}
+
+/// Returns the vertices on the west, south, east and north side, in the order of their positions
+/// along it.
+fn borders(vertices: &[[u16; 3]]) -> [Vec<u32>; 4] {
+    let sides = [
+        (0, 0),
+        (1, 0),
+        (0, TerrainTile::STEPS),
+        (1, TerrainTile::STEPS),
+    ];
+    sides.map(|(axis, at)| {
+        let numbers = 0..vertices.len() as u32;
+        let mut border: Vec<u32> = numbers
+            .filter(|&v| vertices[v as usize][axis] == at)
+            .collect();
+        border.sort_by_key(|&v| vertices[v as usize][1 - axis]);
+        border
+    })
+}

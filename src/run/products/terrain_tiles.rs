@@ -1,0 +1,360 @@
+//! Levels of terrain tiles, for viewers of the earth.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use rayon::prelude::*;
+
+use super::surface::SurfaceProduct;
+use crate::crs::{Crs, Transform};
+use crate::data::{TerrainTile, TilePosition, Tiling};
+use crate::error::{Error, Result, Setting, wording};
+use crate::io::OutputFolder;
+use crate::io::quantized_mesh::{LayerOptions, encode, layer_json};
+use crate::io::tiles_3d::{self, TilesetRoot};
+use crate::run::context::notice::Notice;
+use crate::run::context::units::Units;
+use crate::run::context::{Context, Journal, Size, Stage};
+use crate::run::sources::proj;
+use crate::terrain::{Level, Pyramid, PyramidRule, TileReport};
+
+/// The file by which a viewer finds quantized meshes, and that by which it finds 3D Tiles.
+const LAYER: &str = "layer.json";
+const TILESET: &str = "tileset.json";
+
+/// The files by which a folder is known to be one of tiles.
+const MARKS: &[&str] = &[LAYER, TILESET];
+
+/// The format of terrain tiles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum TerrainFormat {
+    /// Quantized meshes with `layer.json`.
+    #[default]
+    QuantizedMesh,
+    /// 3D Tiles 1.1: GLB with implicit tiling.
+    Tiles3d,
+}
+
+/// Which terrain tiles are written, and how.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct TerrainTilesOptions {
+    /// The format.
+    pub format: TerrainFormat,
+    /// The levels, their bounds, and the division into tiles.
+    pub rule: PyramidRule,
+    /// What is added to heights to get heights above the ellipsoid, in meters: the height of the
+    /// geoid, if heights are above it. `None` adds nothing, and a notice says so unless the
+    /// coordinate system has heights above the ellipsoid.
+    pub vertical_offset: Option<f64>,
+    /// Tiles are not compressed.
+    pub plain: bool,
+    /// The name of the terrain; by default that of the folder.
+    pub name: Option<String>,
+}
+
+/// What was written of a level.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct LevelReport {
+    /// 0 for the level with the largest tiles.
+    pub level: u8,
+    /// The bound in meters.
+    pub bound: f64,
+    /// The number of tiles.
+    pub tiles: usize,
+    /// The bytes of all tiles.
+    pub bytes: u64,
+    /// The sums of all tiles. A height on a border is measured against one of the tiles.
+    pub sums: TileReport,
+}
+
+/// What was written.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct TerrainTilesReport {
+    /// The levels, the coarsest first.
+    pub levels: Vec<LevelReport>,
+    /// What was assumed and what looks wrong, in the order in which it was found.
+    pub notices: Vec<Notice>,
+}
+
+/// Writes a surface as levels of tiles, in a folder that appears at the end or not at
+/// all. A folder that exists is replaced if `may_replace`, and if it is one of tiles.
+///
+/// Heights are measured against the triangles as they are written: no vertex of the surface is
+/// further from them than the bound of the level, unless a [`Notice::BeyondBound`] says so.
+///
+/// # Errors
+/// If the coordinate system is not known or cannot be transformed (which needs the feature `proj`,
+/// unless it is that of the tiles), the surface is a large raster, there would be too many tiles,
+/// a file cannot be written, or the run is canceled.
+///
+/// # Complexity
+/// O(n log n) for n vertices at each level, on all threads: tiles of a level at the same time.
+/// About 150 bytes for each vertex.
+pub fn write_terrain_tiles(
+    surface: &SurfaceProduct,
+    options: &TerrainTilesOptions,
+    target: &Path,
+    may_replace: bool,
+    context: &Context,
+) -> Result<TerrainTilesReport> {
+    let journal = Journal::new(context);
+    options.rule.check()?;
+    let folder = OutputFolder::create(target, may_replace, MARKS)?;
+    let pyramid = surface.with_faces(context, |faces| {
+        let placing = Placing::new(faces.crs(), options, &journal)?;
+        let pyramid = Pyramid::new(
+            faces,
+            &|points| placing.apply(points),
+            &options.rule,
+            context.cancel,
+        )?;
+        faces.ensure_intact()?;
+        placing.warn(&journal);
+        Ok(pyramid)
+    })?;
+    let layout = Layout::new(options, &pyramid, target)?;
+    let levels = write_levels(&pyramid, &layout, options, &folder, &journal)?;
+    for (path, bytes) in layout.index(&pyramid)? {
+        folder.write(&path, &bytes)?;
+    }
+    folder.commit()?;
+    Ok(TerrainTilesReport {
+        levels,
+        notices: journal.take(),
+    })
+}
+
+fn write_levels(
+    pyramid: &Pyramid,
+    layout: &Layout,
+    options: &TerrainTilesOptions,
+    folder: &OutputFolder,
+    journal: &Journal,
+) -> Result<Vec<LevelReport>> {
+    let context = &journal.context;
+    let count: usize = pyramid.levels().iter().map(|level| level.tiles.len()).sum();
+    let work = journal.start(Stage::WritingTiles, Size::Items(count as u64))?;
+    let mut levels = Vec::new();
+    for level in pyramid.levels() {
+        let tiles = level.tiles.par_iter().with_max_len(1).map(|&at| {
+            let Some(path) = layout.path(at) else {
+                work.add(1)?;
+                return Ok(None);
+            };
+            let (tile, report) = pyramid.tile(at, context.cancel)?;
+            let mut bytes = layout.bytes(&tile, level)?;
+            if !options.plain {
+                bytes = compressed(&bytes)?;
+            }
+            folder.write(&path, &bytes)?;
+            work.add(1)?;
+            Ok(Some((report, bytes.len() as u64)))
+        });
+        let written: Vec<Option<(TileReport, u64)>> = tiles.collect::<Result<_>>()?;
+        let written: Vec<(TileReport, u64)> = written.into_iter().flatten().collect();
+        if written.is_empty() {
+            continue;
+        }
+        let mut sums = TileReport::default();
+        written.iter().for_each(|(report, _)| sums.merge(report));
+        if sums.beyond > 0 {
+            journal.add(Notice::BeyondBound {
+                level: level.level,
+                count: sums.beyond,
+                largest: sums.largest,
+                bound: level.allowance,
+            });
+        }
+        levels.push(LevelReport {
+            level: level.level,
+            bound: level.bound,
+            tiles: written.len(),
+            bytes: written.iter().map(|(_, bytes)| bytes).sum(),
+            sums,
+        });
+    }
+    work.end()?;
+    Ok(levels)
+}
+
+/// Servers and viewers expect tiles to be compressed.
+fn compressed(bytes: &[u8]) -> Result<Vec<u8>> {
+    let mut gzip = GzEncoder::new(Vec::new(), Compression::new(9));
+    gzip.write_all(bytes)?;
+    Ok(gzip.finish()?)
+}
+
+/// The files of a format: where tiles are, and by which files viewers find them.
+enum Layout {
+    QuantizedMesh { tiling: Tiling, name: String },
+    Tiles3d { roots: Vec<TilesetRoot> },
+}
+
+impl Layout {
+    fn new(options: &TerrainTilesOptions, pyramid: &Pyramid, target: &Path) -> Result<Self> {
+        let tiling = pyramid.tiling();
+        match options.format {
+            TerrainFormat::QuantizedMesh => {
+                let of_folder = target.file_name().map(|name| name.to_string_lossy());
+                let name = options.name.clone().unwrap_or_else(|| {
+                    of_folder.map_or_else(|| "terrain".to_owned(), |name| name.into_owned())
+                });
+                Ok(Layout::QuantizedMesh { tiling, name })
+            }
+            TerrainFormat::Tiles3d if tiling != Tiling::Geographic => Err(Error::unsupported(
+                "3D Tiles are squares of degrees, and cannot be divided as Web Mercator is",
+            )),
+            TerrainFormat::Tiles3d => {
+                let [low, high] = pyramid.heights();
+                let of_level = |at: TilePosition| {
+                    let level = &pyramid.levels()[usize::from(at.level)];
+                    TilesetRoot {
+                        at,
+                        bound: level.bound,
+                        range: [low - skirt(level) - level.step, high + level.step],
+                    }
+                };
+                let roots = tiles_3d::roots(&tiles_of(pyramid));
+                Ok(Layout::Tiles3d {
+                    roots: roots.into_iter().map(of_level).collect(),
+                })
+            }
+        }
+    }
+
+    /// Returns where a tile is in the folder; `None` if the format does not have it.
+    fn path(&self, at: TilePosition) -> Option<PathBuf> {
+        match self {
+            Layout::QuantizedMesh { .. } => Some(PathBuf::from(format!("{}.terrain", numbers(at)))),
+            Layout::Tiles3d { roots } => roots.iter().find_map(|root| {
+                let at = root.relative(at)?;
+                let folder = root.folder(roots.len());
+                Some(PathBuf::from(format!(
+                    "{folder}content/{}.glb",
+                    numbers(at)
+                )))
+            }),
+        }
+    }
+
+    fn bytes(&self, tile: &TerrainTile, level: &Level) -> Result<Vec<u8>> {
+        match self {
+            Layout::QuantizedMesh { tiling, .. } => Ok(encode(tile, *tiling)),
+            Layout::Tiles3d { .. } => tiles_3d::content(tile, Tiling::Geographic, skirt(level)),
+        }
+    }
+
+    /// Returns the files by which viewers find the tiles.
+    fn index(&self, pyramid: &Pyramid) -> Result<Vec<(PathBuf, Vec<u8>)>> {
+        let all = tiles_of(pyramid);
+        match self {
+            Layout::QuantizedMesh { tiling, name } => {
+                let layer = LayerOptions {
+                    name: name.clone(),
+                    bounds: pyramid.bounds().map(|corner| tiling.degrees(corner)),
+                    extensions: Vec::new(),
+                };
+                let text = layer_json(*tiling, &all, &layer);
+                Ok(vec![(PathBuf::from(LAYER), text.into_bytes())])
+            }
+            Layout::Tiles3d { roots } => {
+                let finest = pyramid.levels().len().saturating_sub(1) as u8;
+                let text = tiles_3d::tileset_json(roots, finest);
+                let mut files = vec![(PathBuf::from(TILESET), text.into_bytes())];
+                for root in roots {
+                    let folder = root.folder(roots.len());
+                    let path = |at| format!("{folder}subtrees/{}.subtree", numbers(at)).into();
+                    let subtrees = tiles_3d::subtrees(root, &all).into_iter();
+                    files.extend(subtrees.map(|(at, bytes)| (path(at), bytes)));
+                }
+                Ok(files)
+            }
+        }
+    }
+}
+
+/// The depth of skirts: a tile of the level and one of the next coarser level are within their
+/// bounds of the surface.
+fn skirt(level: &Level) -> f64 {
+    level.bound + 2.0 * level.bound
+}
+
+fn tiles_of(pyramid: &Pyramid) -> Vec<&[TilePosition]> {
+    let levels = pyramid.levels().iter();
+    levels.map(|level| level.tiles.as_slice()).collect()
+}
+
+fn numbers(TilePosition { level, column, row }: TilePosition) -> String {
+    format!("{level}/{column}/{row}")
+}
+
+/// How positions of a surface become those of tiles.
+struct Placing {
+    /// `None` if they are in the system of the tiles.
+    transform: Option<Box<dyn Transform>>,
+    /// Meters in a unit of height, and what is added to heights.
+    factor: f64,
+    offset: f64,
+}
+
+impl Placing {
+    fn new(crs: Option<&Crs>, options: &TerrainTilesOptions, journal: &Journal) -> Result<Self> {
+        let Some(crs) = crs else {
+            return Err(Error::usage(
+                "the coordinate system of the surface is not known: where it is on the earth, neither",
+            )
+            .cure(wording!["state it with ", Setting::Crs.text("EPSG:CODE")]));
+        };
+        if options.vertical_offset.is_none() {
+            let is_above_ellipsoid = crs.vertical_unit.is_some() && crs.vertical_epsg.is_none();
+            if !is_above_ellipsoid {
+                journal.add(Notice::HeightsAboveEllipsoid(crs.vertical_epsg));
+            }
+        }
+        // Heights are converted here: to PROJ they are nothing.
+        let plan = Crs {
+            vertical_epsg: None,
+            vertical_unit: None,
+            ..crs.clone()
+        };
+        let system = Crs::from_epsg(options.rule.tiling.epsg())?;
+        let transform = match plan.is_same(&system) {
+            true => None,
+            false => {
+                journal.add(Notice::Reprojecting(
+                    Box::new(plan.clone()),
+                    Box::new(system.clone()),
+                ));
+                Some(proj::transform(&plan, &system)?)
+            }
+        };
+        Ok(Placing {
+            transform,
+            factor: 1.0 / Units::of(Some(crs)).height_of_metres(1.0),
+            offset: options.vertical_offset.unwrap_or(0.0),
+        })
+    }
+
+    fn apply(&self, points: &mut [[f64; 3]]) -> Result<()> {
+        if let Some(transform) = &self.transform {
+            transform.transform(points)?;
+        }
+        for [_, _, z] in points {
+            *z = *z * self.factor + self.offset;
+        }
+        Ok(())
+    }
+
+    fn warn(&self, journal: &Journal) {
+        let warnings = self
+            .transform
+            .iter()
+            .flat_map(|transform| transform.warnings());
+        warnings.for_each(|text| journal.add(Notice::Transform(text)));
+    }
+}

@@ -1,0 +1,224 @@
+//! The surface along the lines between tiles.
+
+use rustc_hash::FxHashMap;
+
+use crate::data::{TerrainTile, Tiling, orientation};
+use crate::triangulation::num::Sign;
+
+/// A height at a position along a line.
+type Height = [f64; 2];
+
+/// The heights of a surface along all lines between the tiles of one level, and where they cross.
+///
+/// A line is linear between the heights that are kept: those at all edges that it crosses.
+pub(super) struct TileLines {
+    tiling: Tiling,
+    level: u8,
+    /// By the axis that is constant, and the number of the line; sorted.
+    lines: FxHashMap<(usize, u32), Vec<Height>>,
+    /// The heights where two lines cross.
+    crossings: FxHashMap<[u32; 2], f64>,
+}
+
+impl TileLines {
+    pub(super) fn new(tiling: Tiling, level: u8) -> Self {
+        TileLines {
+            tiling,
+            level,
+            lines: FxHashMap::default(),
+            crossings: FxHashMap::default(),
+        }
+    }
+
+    /// Returns the numbers of the first and the last line between two coordinates. It may be one
+    /// too many at each end.
+    fn numbers(&self, axis: usize, low: f64, high: f64) -> std::ops::RangeInclusive<u32> {
+        let last = f64::from(self.tiling.size(self.level)[axis]);
+        let number = |value: f64| self.tiling.in_sides(axis, self.level, value);
+        let first = number(low).floor().clamp(0.0, last) as u32;
+        first..=number(high).ceil().clamp(0.0, last) as u32
+    }
+
+    /// Adds a triangle of the surface. Where triangles meet, the first one counts.
+    pub(super) fn add(&mut self, corners: [[f64; 3]; 3]) {
+        let range = |axis: usize| {
+            let of = corners.map(|p| p[axis]);
+            let low = of.into_iter().fold(f64::INFINITY, f64::min);
+            [low, of.into_iter().fold(f64::NEG_INFINITY, f64::max)]
+        };
+        let ranges = [range(0), range(1)];
+        let mut inside: [Vec<u32>; 2] = [Vec::new(), Vec::new()];
+        for axis in 0..2 {
+            let [low, high] = ranges[axis];
+            for number in self.numbers(axis, low, high) {
+                let at = self.tiling.line(axis, self.level, number);
+                if at < low || at > high {
+                    continue;
+                }
+                inside[axis].push(number);
+                let line = self.lines.entry((axis, number)).or_default();
+                for i in 0..3 {
+                    cross(corners[i], corners[(i + 1) % 3], axis, at, line);
+                }
+            }
+        }
+        for &column in &inside[0] {
+            for &row in &inside[1] {
+                let at = [
+                    self.tiling.line(0, self.level, column),
+                    self.tiling.line(1, self.level, row),
+                ];
+                if let Some(height) = height_in(corners, at) {
+                    self.crossings.entry([column, row]).or_insert(height);
+                }
+            }
+        }
+    }
+
+    /// Sorts what was added.
+    pub(super) fn finish(&mut self) {
+        for line in self.lines.values_mut() {
+            line.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
+            line.dedup();
+            line.shrink_to_fit();
+        }
+    }
+
+    /// Returns the heights along a line of a level that is not finer, between two positions on it.
+    pub(super) fn along(&self, axis: usize, level: u8, number: u32, ends: [f64; 2]) -> &[Height] {
+        let number = number << (self.level - level);
+        let Some(line) = self.lines.get(&(axis, number)) else {
+            return &[];
+        };
+        let first = line.partition_point(|&[t, _]| t < ends[0]);
+        let last = line.partition_point(|&[t, _]| t <= ends[1]);
+        &line[first..last.max(first)]
+    }
+
+    /// Returns the height where two lines of a level that is not finer cross.
+    pub(super) fn crossing(&self, level: u8, numbers: [u32; 2]) -> Option<f64> {
+        let numbers = numbers.map(|number| number << (self.level - level));
+        self.crossings.get(&numbers).copied()
+    }
+}
+
+/// Adds the position and the height at which an edge crosses a line; both ends of an edge on it.
+fn cross(p: [f64; 3], q: [f64; 3], axis: usize, at: f64, line: &mut Vec<Height>) {
+    // The same numbers from both sides of the edge.
+    let [p, q] = if p[axis] <= q[axis] { [p, q] } else { [q, p] };
+    if at < p[axis] || at > q[axis] {
+        return;
+    }
+    let height_of = |p: [f64; 3]| [p[1 - axis], p[2]];
+    if p[axis] == at {
+        line.push(height_of(p));
+    }
+    if q[axis] == at {
+        line.push(height_of(q));
+    }
+    if p[axis] < at && at < q[axis] {
+        let t = (at - p[axis]) / (q[axis] - p[axis]);
+        let [a, b] = [height_of(p), height_of(q)];
+        line.push([0, 1].map(|k| a[k] + t * (b[k] - a[k])));
+    }
+}
+
+/// Returns the height of a triangle at a position, if it is there.
+fn height_in(corners: [[f64; 3]; 3], at: [f64; 2]) -> Option<f64> {
+    let [a, b, c] = corners;
+    let is_left = |p, q| orientation([p, q, [at[0], at[1], 0.0]]) != Sign::Negative;
+    (is_left(a, b) && is_left(b, c) && is_left(c, a)).then(|| height_on(corners, at))
+}
+
+/// Returns the height of the plane through the corners of a triangle.
+pub(super) fn height_on([a, b, c]: [[f64; 3]; 3], at: [f64; 2]) -> f64 {
+    let minus = |p: [f64; 3]| [p[0] - a[0], p[1] - a[1]];
+    let ([bx, by], [cx, cy]) = (minus(b), minus(c));
+    let [x, y] = [at[0] - a[0], at[1] - a[1]];
+    let area = bx * cy - by * cx;
+    let (s, t) = ((x * cy - y * cx) / area, (bx * y - by * x) / area);
+    let height = a[2] + s * (b[2] - a[2]) + t * (c[2] - a[2]);
+    // A triangle without an area, rounded.
+    if height.is_finite() { height } else { a[2] }
+}
+
+/// The vertices of a border: positions along it in steps, and heights in steps of height.
+pub(super) type Chain = Vec<(u16, i32)>;
+
+/// Chooses the vertices of a border: the ends and all others that are `fixed` stay. No height is
+/// further from the line through them than the bound, if the steps are fine enough.
+///
+/// `heights` are in steps along the border, and in meters. The result depends on nothing else, so
+/// that both tiles at a border have the same vertices.
+///
+/// # Complexity
+/// Quadratic in the vertices at worst, else linear for each halving.
+pub(super) fn chain(heights: &[Height], fixed: &[(u16, i32)], step: f64, bound: f64) -> Chain {
+    let mut chain = fixed.to_vec();
+    for ends in fixed.windows(2) {
+        let mut open = vec![[ends[0], ends[1]]];
+        while let Some([a, b]) = open.pop() {
+            let Some([t, z]) = worst(heights, a, b, step, bound) else {
+                continue;
+            };
+            if b.0 - a.0 < 2 {
+                continue;
+            }
+            let at = (t.round() as u16).clamp(a.0 + 1, b.0 - 1);
+            let middle = (at, (z / step).round() as i32);
+            chain.push(middle);
+            open.extend([[a, middle], [middle, b]]);
+        }
+    }
+    chain.sort_unstable();
+    // What later ones made unnecessary.
+    let mut i = 1;
+    while i + 1 < chain.len() {
+        let is_fixed = fixed.binary_search(&chain[i]).is_ok();
+        let [before, after] = [chain[i - 1], chain[i + 1]];
+        if !is_fixed && worst(heights, before, after, step, bound).is_none() {
+            chain.remove(i);
+        } else {
+            i += 1;
+        }
+    }
+    chain
+}
+
+/// The height between two vertices that is furthest from the line between them, if one is further
+/// than the bound.
+fn worst(
+    heights: &[Height],
+    a: (u16, i32),
+    b: (u16, i32),
+    step: f64,
+    bound: f64,
+) -> Option<Height> {
+    let [from, to] = [a, b].map(|(at, height)| [f64::from(at), f64::from(height) * step]);
+    let first = heights.partition_point(|&[t, _]| t < from[0]);
+    let last = heights.partition_point(|&[t, _]| t <= to[0]);
+    let slope = (to[1] - from[1]) / (to[0] - from[0]);
+    let off = |&[t, z]: &Height| (from[1] + slope * (t - from[0]) - z).abs();
+    let mut worst: Option<(f64, Height)> = None;
+    for height in &heights[first..last.max(first)] {
+        let off = off(height);
+        if off > bound && worst.is_none_or(|(most, _)| off > most) {
+            worst = Some((off, *height));
+        }
+    }
+    worst.map(|(_, height)| height)
+}
+
+/// Returns heights with positions in steps from one end of a border to the other.
+pub(super) fn in_steps(heights: &[Height], [first, last]: [f64; 2]) -> Vec<Height> {
+    heights
+        .iter()
+        .map(|&[t, z]| [steps_between(t, first, last), z])
+        .collect()
+}
+
+/// Returns how many steps of a tile a coordinate is from its first side, within the tile.
+pub(super) fn steps_between(value: f64, first: f64, last: f64) -> f64 {
+    let all = f64::from(TerrainTile::STEPS);
+    ((value - first) / (last - first) * all).clamp(0.0, all)
+}

@@ -1,0 +1,338 @@
+use std::sync::atomic::AtomicBool;
+
+use rustc_hash::FxHashMap;
+
+use super::lines::{chain, height_on};
+use super::{Level, Pyramid, PyramidRule, TileReport};
+use crate::crs::geocentric;
+use crate::data::{Mesh, TerrainTile, TilePosition, Tiling};
+use crate::terrain::{Tin, TinBuilder};
+use testkit::random::Random;
+
+static GO_ON: AtomicBool = AtomicBool::new(false);
+
+/// The side of a surface: that of eight tiles of level 13.
+const SIDE: f64 = 8.0 * 180.0 / 8192.0;
+
+/// A surface of random heights in degrees; small integers of a lattice, so that vertices lie on
+/// borders of tiles, if `on_lines`.
+fn surface(seed: u64, count: usize, on_lines: bool) -> Tin {
+    let mut random = Random(seed);
+    let mut builder = TinBuilder::default();
+    // The surface is a square.
+    for [x, y] in [[0.0, 0.0], [SIDE, 0.0], [0.0, SIDE], [SIDE, SIDE]] {
+        builder.add_points(&[7.0 + x], &[46.0 + y], &[300.0]);
+    }
+    for _ in 0..count {
+        let [x, y] = match on_lines {
+            true => [0; 2].map(|_| random.below(64) as f64 * SIDE / 64.0),
+            false => [0; 2].map(|_| random.unit() * SIDE),
+        };
+        let z = 300.0 + 40.0 * (x * 60.0).sin() + 30.0 * (y * 45.0).cos() + random.below(9) as f64;
+        builder.add_points(&[7.0 + x], &[46.0 + y], &[z]);
+    }
+    builder.build().unwrap()
+}
+
+fn pyramid(surface: &Tin, rule: &PyramidRule) -> Pyramid {
+    Pyramid::new(surface, &|_| Ok(()), rule, &GO_ON).unwrap()
+}
+
+/// The levels that are judged: coarser ones are grids that follow the earth.
+fn levels(pyramid: &Pyramid) -> std::ops::Range<usize> {
+    7..pyramid.levels().len()
+}
+
+fn tiles_of(pyramid: &Pyramid, level: usize) -> Vec<(TerrainTile, TileReport)> {
+    let tiles = &pyramid.levels()[level].tiles;
+    tiles
+        .iter()
+        .map(|&at| pyramid.tile(at, &GO_ON).unwrap())
+        .collect()
+}
+
+/// The vertices of a tile on a side, with the bits of their positions and heights.
+fn side(tile: &TerrainTile, axis: usize, at: u16) -> Vec<[u64; 2]> {
+    let mut side: Vec<[u64; 2]> = tile
+        .vertices
+        .iter()
+        .filter(|v| v[axis] == at)
+        .map(|v| [u64::from(v[1 - axis]), tile.height(v[2]).to_bits()])
+        .collect();
+    side.sort_unstable();
+    side
+}
+
+fn rules() -> [PyramidRule; 3] {
+    let rule = PyramidRule {
+        finest: Some(13),
+        ..PyramidRule::default()
+    };
+    [
+        rule,
+        PyramidRule {
+            max_error: Some(0.5),
+            finest: Some(12),
+            ..rule
+        },
+        PyramidRule {
+            fill: Some(-20.0),
+            ..rule
+        },
+    ]
+}
+
+#[test]
+fn borders_of_a_level_are_equal_to_the_bit() {
+    let mut compared = 0;
+    for (seed, rule) in (0..).zip(rules()) {
+        for on_lines in [false, true] {
+            let surface = surface(seed, 900, on_lines);
+            let pyramid = pyramid(&surface, &rule);
+            for level in levels(&pyramid) {
+                let tiles = tiles_of(&pyramid, level);
+                let by_position: FxHashMap<TilePosition, &TerrainTile> =
+                    tiles.iter().map(|(tile, _)| (tile.at, tile)).collect();
+                for (tile, _) in &tiles {
+                    let TilePosition { level, column, row } = tile.at;
+                    let others = [(column + 1, row), (column, row + 1)];
+                    for (axis, (column, row)) in others.into_iter().enumerate() {
+                        let Some(other) = by_position.get(&TilePosition { level, column, row })
+                        else {
+                            continue;
+                        };
+                        let own = side(tile, axis, TerrainTile::STEPS);
+                        assert_eq!(own, side(other, axis, 0), "{:?}", tile.at);
+                        compared += own.len();
+                    }
+                }
+            }
+        }
+    }
+    assert!(compared > 2000, "{compared}");
+}
+
+/// The height of a side of a tile at a position in steps.
+fn height_along(side: &[[u64; 2]], t: f64) -> f64 {
+    let after = side.partition_point(|&[at, _]| (at as f64) < t).max(1);
+    let [[a, from], [b, to]] = [side[after - 1], side[after]];
+    let [from, to] = [from, to].map(f64::from_bits);
+    from + (t - a as f64) / (b - a) as f64 * (to - from)
+}
+
+#[test]
+fn between_levels_borders_are_within_the_sum_of_the_bounds() {
+    let mut random = Random(21);
+    let mut judged = 0;
+    for (seed, rule) in (40..).zip(rules()) {
+        let surface = surface(seed, 900, seed % 2 == 0);
+        let pyramid = pyramid(&surface, &rule);
+        for level in levels(&pyramid) {
+            let [coarse, fine] = [level - 1, level].map(|level| tiles_of(&pyramid, level));
+            let bounds = [level - 1, level].map(|level| pyramid.levels()[level].allowance);
+            for (tile, _) in &fine {
+                let TilePosition { column, row, .. } = tile.at;
+                let above = |other: &&(TerrainTile, TileReport)| {
+                    [other.0.at.column, other.0.at.row] == [column / 2, row / 2]
+                };
+                let (parent, _) = coarse.iter().find(above).unwrap();
+                let [min, max] = Tiling::Geographic.bounds(tile.at);
+                for (axis, at) in [(0, column), (1, row)] {
+                    // The side of the tile that is on one of the tile above it.
+                    let side_at = if at % 2 == 0 { 0 } else { TerrainTile::STEPS };
+                    let [own, other] = [tile, parent].map(|tile| side(tile, axis, side_at));
+                    let half = f64::from([row, column][axis] % 2);
+                    for _ in 0..200 {
+                        let t = random.unit();
+                        let along = 1 - axis;
+                        let place = min[along] + t * (max[along] - min[along]);
+                        let across = if side_at == 0 { min[axis] } else { max[axis] };
+                        let start = [[7.0, 46.0][along], [7.0, 46.0][axis]];
+                        let is_inside = [place, across]
+                            .into_iter()
+                            .zip(start)
+                            .all(|(c, start)| c > start && c < start + SIDE);
+                        if !is_inside {
+                            continue;
+                        }
+                        let heights = [
+                            height_along(&own, t * 32_767.0),
+                            height_along(&other, (t + half) / 2.0 * 32_767.0),
+                        ];
+                        let gap = (heights[0] - heights[1]).abs();
+                        assert!(gap <= bounds[0] + bounds[1], "{:?} {gap}", tile.at);
+                        judged += 1;
+                    }
+                }
+            }
+        }
+    }
+    assert!(judged > 10_000, "{judged}");
+}
+
+/// The height of a tile at a position in steps, by a search of all triangles.
+fn height_of(tile: &TerrainTile, at: [f64; 2]) -> Option<f64> {
+    tile.triangles.iter().find_map(|face| {
+        let corners = face.map(|v| {
+            let [x, y, z] = tile.vertices[v as usize];
+            [f64::from(x), f64::from(y), tile.height(z)]
+        });
+        let side = |i: usize| {
+            let [p, q] = [corners[i], corners[(i + 1) % 3]];
+            (q[0] - p[0]) * (at[1] - p[1]) - (q[1] - p[1]) * (at[0] - p[0])
+        };
+        let is_inside = (0..3).all(|i| side(i) >= -1e-6);
+        is_inside.then(|| height_on(corners, at))
+    })
+}
+
+#[test]
+fn the_bound_holds_at_each_height_of_each_level() {
+    for rule in rules() {
+        let surface = surface(5, 700, false);
+        let pyramid = pyramid(&surface, &rule);
+        let points: Vec<[f64; 3]> = pyramid.points.clone();
+        for level in levels(&pyramid) {
+            let bound = pyramid.levels()[level].bound;
+            let tiles = tiles_of(&pyramid, level);
+            let mut judged = 0;
+            for (tile, report) in &tiles {
+                assert_eq!(report.beyond, 0, "{:?} {report:?}", tile.at);
+                let [min, max] = Tiling::Geographic.bounds(tile.at);
+                for &[x, y, z] in &points {
+                    if x < min[0] || x > max[0] || y < min[1] || y > max[1] {
+                        continue;
+                    }
+                    let steps = |c: f64, k: usize| (c - min[k]) / (max[k] - min[k]) * 32_767.0;
+                    let height = height_of(tile, [steps(x, 0), steps(y, 1)]).unwrap();
+                    assert!(
+                        (height - z).abs() <= bound,
+                        "level {level}: {height} {z} {bound}"
+                    );
+                    judged += 1;
+                }
+            }
+            assert!(judged >= points.len());
+        }
+    }
+}
+
+/// In the middle of each triangle, the earth is above it by no more than the share of the bound.
+#[test]
+fn coarse_tiles_follow_the_earth() {
+    let pyramid = pyramid(&surface(3, 50, false), &rules()[0]);
+    for level in [0, 1, 4] {
+        let Level {
+            bound, allowance, ..
+        } = pyramid.levels()[level];
+        for (tile, _) in tiles_of(&pyramid, level) {
+            let place = |p: [f64; 3]| geocentric(p);
+            for face in &tile.triangles {
+                let corners =
+                    face.map(|v| tile.position(Tiling::Geographic, tile.vertices[v as usize]));
+                let middle = |of: [[f64; 3]; 3]| {
+                    [0, 1, 2].map(|k| of.iter().map(|p| p[k]).sum::<f64>() / 3.0)
+                };
+                let flat = middle(corners.map(place));
+                let curved = place(middle(corners));
+                let length = |p: [f64; 3]| p.iter().map(|c| c * c).sum::<f64>().sqrt();
+                let above = length(curved) - length(flat);
+                assert!(above < (bound - allowance) * 1.01 + 1.0, "{level} {above}");
+            }
+        }
+    }
+}
+
+/// A tile is one square of triangles, without gaps and overlaps: its area is that of the square, and
+/// each edge inside has two triangles.
+#[test]
+fn a_tile_is_covered_once() {
+    let surface = surface(2, 500, true);
+    let pyramid = pyramid(&surface, &rules()[1]);
+    for level in levels(&pyramid) {
+        for (tile, _) in tiles_of(&pyramid, level) {
+            let mut doubled = 0;
+            let mut edges: FxHashMap<[u32; 2], i32> = FxHashMap::default();
+            for face in &tile.triangles {
+                let corners = face.map(|v| tile.vertices[v as usize].map(i64::from));
+                let [a, b, c] = corners;
+                let area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+                assert!(area > 0);
+                doubled += area;
+                for i in 0..3 {
+                    let [p, q] = [face[i], face[(i + 1) % 3]];
+                    *edges.entry([p.min(q), p.max(q)]).or_default() += 1;
+                }
+            }
+            assert_eq!(doubled, 2 * 32_767 * 32_767);
+            let is_at_side = |v: u32| {
+                let [x, y, _] = tile.vertices[v as usize];
+                [x, y].iter().any(|&c| c == 0 || c == TerrainTile::STEPS)
+            };
+            assert!(edges.iter().all(|([p, q], &count)| {
+                count == 2 || count == 1 && is_at_side(*p) && is_at_side(*q)
+            }));
+        }
+    }
+}
+
+#[test]
+fn a_border_depends_on_its_heights_alone_and_is_near_to_all() {
+    let mut random = Random(11);
+    for _ in 0..300 {
+        let count = 1 + random.index(60);
+        let mut heights: Vec<[f64; 2]> = (0..count)
+            .map(|_| {
+                let at = 1 + random.below(2000);
+                [at as f64 * 16.25, random.below(50) as f64]
+            })
+            .collect();
+        heights.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]));
+        heights.dedup_by(|a, b| a[0] == b[0]);
+        let ends = [(0, 80), (32_767, 40)];
+        let bound = 0.5 + random.below(20) as f64;
+        let found = chain(&heights, &ends, 0.25, bound);
+        assert!(ends.iter().all(|end| found.contains(end)));
+        for &[t, z] in &heights {
+            let after = found.partition_point(|&(at, _)| f64::from(at) < t).max(1);
+            let [(a, from), (b, to)] = [found[after - 1], found[after]];
+            let along = (t - f64::from(a)) / f64::from(b - a);
+            let height = 0.25 * (f64::from(from) + along * f64::from(to - from));
+            assert!((height - z).abs() <= bound + 1e-9);
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_tiled_is_refused() {
+    let corners = vec![[7.0, 46.0, 1.0], [8.0, 46.0, 1.0], [7.0, 47.0, 1.0]];
+    let mesh = Mesh::new(corners, vec![[0, 1, 2]], &[], None).unwrap();
+    let refused = |place: &(dyn Fn(&mut [[f64; 3]]) -> crate::Result<()> + Sync),
+                   rule: PyramidRule| {
+        let made = Pyramid::new(&mesh, place, &rule, &GO_ON);
+        made.err().unwrap().to_string()
+    };
+    let rule = PyramidRule::default();
+    let far = |points: &mut [[f64; 3]]| {
+        points.iter_mut().for_each(|p| p[0] += 400.0);
+        Ok(())
+    };
+    assert!(refused(&far, rule).contains("beyond all tiles of EPSG:4326"));
+    let lost = |points: &mut [[f64; 3]]| {
+        points[0][1] = f64::NAN;
+        Ok(())
+    };
+    assert!(refused(&lost, rule).contains("no position on the earth"));
+    let here = |_: &mut [[f64; 3]]| Ok(());
+    let level = |finest| PyramidRule {
+        finest: Some(finest),
+        ..rule
+    };
+    assert!(refused(&here, level(29)).contains("there is no level 29"));
+    assert!(refused(&here, level(28)).contains("tiles of the surface"));
+    let bound = PyramidRule {
+        max_error: Some(0.0),
+        ..rule
+    };
+    assert!(refused(&here, bound).contains("is not a bound"));
+}

@@ -1,0 +1,174 @@
+//! Terrain tiles as they are typed.
+
+use std::io::Read;
+use std::path::Path;
+
+use breakline::io::quantized_mesh::{DecodedTile, decode};
+use serde_json::Value;
+
+use super::{folder_with, run_in};
+
+/// Heights in degrees: a ridge, 21 x 21 points.
+fn ridge() -> String {
+    let mut text = String::new();
+    for i in 0..21 {
+        for j in 0..21 {
+            let (x, y) = (7.0 + f64::from(i) * 0.0005, 46.0 + f64::from(j) * 0.0005);
+            let z = 400 + 7 * (10 - (i - 10_i32).abs()) + j % 3;
+            text += &format!("{x:.4} {y:.4} {z}\n");
+        }
+    }
+    text
+}
+
+fn tile(path: &Path) -> DecodedTile {
+    let bytes = std::fs::read(path).unwrap();
+    let mut plain = Vec::new();
+    match bytes.starts_with(&[0x1f, 0x8b]) {
+        true => {
+            let mut gzip = flate2::read::GzDecoder::new(&bytes[..]);
+            gzip.read_to_end(&mut plain).unwrap();
+        }
+        false => plain = bytes,
+    }
+    decode(&plain).unwrap()
+}
+
+/// The names of all files below a folder.
+fn files(folder: &Path) -> Vec<String> {
+    let mut open = vec![folder.to_path_buf()];
+    let mut files = Vec::new();
+    while let Some(next) = open.pop() {
+        for entry in std::fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                open.push(path);
+            } else {
+                let name = path.strip_prefix(folder).unwrap();
+                files.push(name.to_str().unwrap().replace('\\', "/"));
+            }
+        }
+    }
+    files.sort();
+    files
+}
+
+const RIDGE: &[&str] = &[
+    "terrain-tiles",
+    "ridge.xyz",
+    "--a-srs",
+    "EPSG:4326",
+    "-o",
+    "tiles",
+];
+
+#[test]
+fn the_tiles_that_are_listed_are_there() {
+    let folder = folder_with(&[("ridge.xyz", &ridge())]);
+    let words = [
+        RIDGE,
+        &["--max-level", "14", "--json", "--vertical-offset", "0"],
+    ]
+    .concat();
+    let run = run_in(&folder, &words);
+    run.works(&["level 14"]);
+    let report: Value = serde_json::from_str(&run.stdout).unwrap();
+    assert_eq!(report["levels"].as_array().unwrap().len(), 15);
+    let tiles = folder.path().join("tiles");
+    let layer: Value =
+        serde_json::from_slice(&std::fs::read(tiles.join("layer.json")).unwrap()).unwrap();
+    assert_eq!(layer["projection"], "EPSG:4326");
+    assert_eq!(layer["scheme"], "tms");
+    let mut listed = vec!["layer.json".to_owned()];
+    for (level, ranges) in layer["available"].as_array().unwrap().iter().enumerate() {
+        let before = listed.len();
+        for range in ranges.as_array().unwrap() {
+            let number = |name: &str| range[name].as_u64().unwrap();
+            for x in number("startX")..=number("endX") {
+                let rows = number("startY")..=number("endY");
+                listed.extend(rows.map(|y| format!("{level}/{x}/{y}.terrain")));
+            }
+        }
+        assert_eq!(report["levels"][level]["tiles"], listed.len() - before);
+    }
+    listed.sort();
+    assert_eq!(files(&tiles), listed);
+    for name in listed.iter().filter(|name| name.ends_with(".terrain")) {
+        let tile = tile(&tiles.join(name));
+        assert!(tile.triangles.len() >= 2, "{name}");
+        assert!(
+            tile.borders.iter().all(|border| border.len() >= 2),
+            "{name}"
+        );
+        let heights = (0..tile.vertices.len() as u32).map(|v| tile.height(v));
+        assert!(
+            heights.into_iter().all(|z| (399.0..475.0).contains(&z)),
+            "{name}"
+        );
+    }
+}
+
+#[test]
+fn a_folder_is_replaced_only_if_asked_for() {
+    let folder = folder_with(&[("ridge.xyz", &ridge())]);
+    let words = [RIDGE, &["--max-level", "9", "--no-gzip"]].concat();
+    run_in(&folder, &words).works(&["heights above the ellipsoid", "--vertical-offset METERS"]);
+    let again = run_in(&folder, &words);
+    again.fails(2, &["the folder exists", "--overwrite"]);
+    let over = [&words[..], &["--overwrite", "--format", "3dtiles"]].concat();
+    run_in(&folder, &over).works(&[]);
+    let tiles = folder.path().join("tiles");
+    let names = files(&tiles);
+    assert!(names.contains(&"tileset.json".to_owned()), "{names:?}");
+    assert!(names.contains(&"content/0/0/0.glb".to_owned()), "{names:?}");
+    assert!(!names.contains(&"layer.json".to_owned()), "{names:?}");
+    let other = [RIDGE[..5].to_vec(), vec![".", "--overwrite"]].concat();
+    run_in(&folder, &other).fails(2, &["it has no layer.json or tileset.json"]);
+}
+
+#[test]
+fn where_a_surface_is_must_be_known() {
+    let folder = folder_with(&[("ridge.xyz", &ridge())]);
+    let nowhere = ["terrain-tiles", "ridge.xyz", "-o", "tiles"];
+    run_in(&folder, &nowhere).fails(2, &["coordinate system", "--a-srs EPSG:CODE"]);
+    let far = [RIDGE, &["--tiling", "mercator", "--format", "3dtiles"]].concat();
+    if cfg!(not(feature = "proj")) {
+        run_in(&folder, &far).fails(4, &["needs PROJ"]);
+    }
+    let level = [RIDGE, &["--max-level", "29"]].concat();
+    run_in(&folder, &level).fails(2, &["there is no level 29", "--max-level"]);
+    assert!(!folder.path().join("tiles").exists());
+}
+
+#[test]
+fn the_bytes_do_not_depend_on_the_order_of_points_or_on_threads() {
+    let text = ridge();
+    let mut lines: Vec<&str> = text.lines().collect();
+    lines.reverse();
+    let folder = folder_with(&[("ridge.xyz", &text), ("back.xyz", &lines.join("\n"))]);
+    let mut made = Vec::new();
+    for (name, threads) in [("ridge.xyz", "1"), ("back.xyz", "3")] {
+        let words = [
+            "terrain-tiles",
+            name,
+            "--a-srs",
+            "EPSG:4326",
+            "-o",
+            "tiles",
+            "--overwrite",
+            "--max-level",
+            "14",
+            "--threads",
+            threads,
+        ];
+        run_in(&folder, &words).works(&[]);
+        let tiles = folder.path().join("tiles");
+        let names = files(&tiles);
+        let bytes: Vec<Vec<u8>> = names
+            .iter()
+            .map(|name| std::fs::read(tiles.join(name)).unwrap())
+            .collect();
+        made.push((names, bytes));
+    }
+    assert!(made[0] == made[1]);
+}
