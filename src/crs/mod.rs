@@ -22,7 +22,7 @@ mod wkt_read;
 mod wkt_tree;
 mod wkt_write;
 
-pub(crate) use ellipsoid::{SEMI_AXES, geocentric};
+pub(crate) use ellipsoid::{SEMI_AXES, from_local, geocentric};
 pub use geokeys::{GeoKeys, RasterType};
 pub use heights::Heights;
 pub use system::{Crs, CrsKind};

@@ -42,6 +42,7 @@ mod lattice;
 mod mesh;
 mod multiples;
 mod named;
+mod normals;
 mod points;
 mod profile;
 mod ramp;
@@ -71,6 +72,7 @@ pub use mesh::Mesh;
 pub(crate) use mesh::{area_of, not_finite, orientation};
 pub(crate) use multiples::{EXACT, Multiples, in_decimals};
 pub(crate) use named::named;
+pub(crate) use normals::{unit, vertex_normals};
 pub use points::{
     PartRead, PointBatch, PointFlags, PointInfo, PointSink, PointSource, PointSummary,
 };

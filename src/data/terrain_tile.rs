@@ -109,6 +109,15 @@ impl Tiling {
         self.angle(level) * RADIUS / SAMPLES / 4.0
     }
 
+    /// Returns the meters in a unit of x and of y at a latitude in degrees, on a sphere.
+    pub fn meters_per_unit(self, latitude: f64) -> [f64; 2] {
+        let cos = latitude.to_radians().cos();
+        match self {
+            Tiling::Geographic => [cos, 1.0].map(|share| share * RADIUS * PI / 180.0),
+            Tiling::WebMercator => [cos; 2],
+        }
+    }
+
     /// Returns longitude and latitude of a position, in degrees.
     pub fn degrees(self, [x, y]: [f64; 2]) -> [f64; 2] {
         match self {
@@ -136,6 +145,9 @@ pub struct TerrainTile {
     pub vertices: Vec<[u16; 3]>,
     /// The corners of the triangles, counter-clockwise.
     pub triangles: Vec<[u32; 3]>,
+    /// The normal of each vertex, along X, Y and Z from the center of the earth. Tiles that share a
+    /// border have the same normals there.
+    pub normals: Vec<[f64; 3]>,
 }
 
 impl TerrainTile {

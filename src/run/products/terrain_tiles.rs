@@ -2,10 +2,10 @@
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use rayon::prelude::*;
 
 use super::surface::SurfaceProduct;
 use crate::crs::{Crs, Transform};
@@ -105,7 +105,7 @@ pub fn write_terrain_tiles(
     let journal = Journal::new(context);
     options.rule.check()?;
     let folder = OutputFolder::create(target, may_replace, MARKS)?;
-    let pyramid = surface.with_faces(context, |faces| {
+    let mut pyramid = surface.with_faces(context, |faces| {
         let placing = Placing::new(faces.crs(), options, &journal)?;
         let pyramid = Pyramid::new(
             faces,
@@ -118,7 +118,7 @@ pub fn write_terrain_tiles(
         Ok(pyramid)
     })?;
     let layout = Layout::new(options, &pyramid, target)?;
-    let levels = write_levels(&pyramid, &layout, options, &folder, &journal)?;
+    let levels = write_levels(&mut pyramid, &layout, options, &folder, &journal)?;
     for (path, bytes) in layout.index(&pyramid)? {
         folder.write(&path, &bytes)?;
     }
@@ -130,38 +130,33 @@ pub fn write_terrain_tiles(
 }
 
 fn write_levels(
-    pyramid: &Pyramid,
+    pyramid: &mut Pyramid,
     layout: &Layout,
     options: &TerrainTilesOptions,
     folder: &OutputFolder,
     journal: &Journal,
 ) -> Result<Vec<LevelReport>> {
-    let context = &journal.context;
     let count: usize = pyramid.levels().iter().map(|level| level.tiles.len()).sum();
     let work = journal.start(Stage::WritingTiles, Size::Items(count as u64))?;
-    let mut levels = Vec::new();
-    for level in pyramid.levels() {
-        let tiles = level.tiles.par_iter().with_max_len(1).map(|&at| {
-            let Some(path) = layout.path(at) else {
-                work.add(1)?;
-                return Ok(None);
-            };
-            let (tile, report) = pyramid.tile(at, context.cancel)?;
-            let mut bytes = layout.bytes(&tile, level)?;
+    let [tiles, bytes] = [(); 2].map(|()| AtomicU64::new(0));
+    let take = |level: &Level, tile: TerrainTile, _: &TileReport| {
+        if let Some(path) = layout.path(tile.at) {
+            let mut written = layout.bytes(&tile, level)?;
             if !options.plain {
-                bytes = compressed(&bytes)?;
+                written = compressed(&written)?;
             }
-            folder.write(&path, &bytes)?;
-            work.add(1)?;
-            Ok(Some((report, bytes.len() as u64)))
-        });
-        let written: Vec<Option<(TileReport, u64)>> = tiles.collect::<Result<_>>()?;
-        let written: Vec<(TileReport, u64)> = written.into_iter().flatten().collect();
-        if written.is_empty() {
-            continue;
+            folder.write(&path, &written)?;
+            tiles.fetch_add(1, Ordering::Relaxed);
+            bytes.fetch_add(written.len() as u64, Ordering::Relaxed);
         }
-        let mut sums = TileReport::default();
-        written.iter().for_each(|(report, _)| sums.merge(report));
+        work.add(1)
+    };
+    let mut levels = Vec::new();
+    let mut end = |level: &Level, sums: &TileReport| {
+        let [tiles, bytes] = [&tiles, &bytes].map(|count| count.swap(0, Ordering::Relaxed));
+        if tiles == 0 {
+            return Ok(());
+        }
         if sums.beyond > 0 {
             journal.add(Notice::BeyondBound {
                 level: level.level,
@@ -173,11 +168,13 @@ fn write_levels(
         levels.push(LevelReport {
             level: level.level,
             bound: level.bound,
-            tiles: written.len(),
-            bytes: written.iter().map(|(_, bytes)| bytes).sum(),
-            sums,
+            tiles: tiles as usize,
+            bytes,
+            sums: *sums,
         });
-    }
+        Ok(())
+    };
+    pyramid.make(&take, &mut end, journal.context.cancel)?;
     work.end()?;
     Ok(levels)
 }
@@ -216,7 +213,7 @@ impl Layout {
                     TilesetRoot {
                         at,
                         bound: level.bound,
-                        range: [low - skirt(level) - level.step, high + level.step],
+                        range: [low - skirt(level) - level.bound, high + level.bound],
                     }
                 };
                 let roots = tiles_3d::roots(&tiles_of(pyramid));
@@ -257,7 +254,7 @@ impl Layout {
                 let layer = LayerOptions {
                     name: name.clone(),
                     bounds: pyramid.bounds().map(|corner| tiling.degrees(corner)),
-                    extensions: Vec::new(),
+                    extensions: vec!["octvertexnormals"],
                 };
                 let text = layer_json(*tiling, &all, &layer);
                 Ok(vec![(PathBuf::from(LAYER), text.into_bytes())])

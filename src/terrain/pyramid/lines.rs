@@ -8,6 +8,12 @@ use crate::triangulation::num::Sign;
 /// A height at a position along a line.
 type Height = [f64; 2];
 
+/// How the surface rises along x and y at the vertices on borders, by their positions in steps.
+pub(super) type Rises = FxHashMap<[u16; 2], [f64; 2]>;
+
+/// A position along a line, the height there, and how the surface rises along x and along y.
+pub(super) type Crossing = [f64; 4];
+
 /// The heights of a surface along all lines between the tiles of one level, and where they cross.
 ///
 /// A line is linear between the heights that are kept: those at all edges that it crosses.
@@ -15,9 +21,9 @@ pub(super) struct TileLines {
     tiling: Tiling,
     level: u8,
     /// By the axis that is constant, and the number of the line; sorted.
-    lines: FxHashMap<(usize, u32), Vec<Height>>,
-    /// The heights where two lines cross.
-    crossings: FxHashMap<[u32; 2], f64>,
+    lines: FxHashMap<(usize, u32), Vec<Crossing>>,
+    /// The heights where two lines cross, and how the surface rises there.
+    crossings: FxHashMap<[u32; 2], [f64; 3]>,
 }
 
 impl TileLines {
@@ -47,6 +53,7 @@ impl TileLines {
             [low, of.into_iter().fold(f64::NEG_INFINITY, f64::max)]
         };
         let ranges = [range(0), range(1)];
+        let rise = rise_of(corners);
         let mut inside: [Vec<u32>; 2] = [Vec::new(), Vec::new()];
         for axis in 0..2 {
             let [low, high] = ranges[axis];
@@ -58,7 +65,10 @@ impl TileLines {
                 inside[axis].push(number);
                 let line = self.lines.entry((axis, number)).or_default();
                 for i in 0..3 {
-                    cross(corners[i], corners[(i + 1) % 3], axis, at, line);
+                    let ends = [corners[i], corners[(i + 1) % 3]];
+                    cross(ends, axis, at, &mut |[t, z]| {
+                        line.push([t, z, rise[0], rise[1]])
+                    });
                 }
             }
         }
@@ -69,41 +79,68 @@ impl TileLines {
                     self.tiling.line(1, self.level, row),
                 ];
                 if let Some(height) = height_in(corners, at) {
-                    self.crossings.entry([column, row]).or_insert(height);
+                    let crossing = [height, rise[0], rise[1]];
+                    self.crossings.entry([column, row]).or_insert(crossing);
                 }
             }
         }
     }
 
-    /// Sorts what was added.
+    /// Sorts what was added. Where triangles meet at a line, the surface rises as in their mean.
     pub(super) fn finish(&mut self) {
         for line in self.lines.values_mut() {
-            line.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
-            line.dedup();
-            line.shrink_to_fit();
+            line.sort_unstable_by(|a, b| {
+                let each = a.iter().zip(b).map(|(a, b)| a.total_cmp(b));
+                each.fold(std::cmp::Ordering::Equal, std::cmp::Ordering::then)
+            });
+            let same = |a: &Crossing, b: &Crossing| a[..2] == b[..2];
+            let mean = |all: &[Crossing]| {
+                let [t, z, ..] = all[0];
+                let rise =
+                    [2, 3].map(|k| all.iter().map(|of| of[k]).sum::<f64>() / all.len() as f64);
+                [t, z, rise[0], rise[1]]
+            };
+            *line = line.chunk_by(same).map(mean).collect();
         }
     }
 
     /// Returns the heights along a line of a level that is not finer, between two positions on it.
-    pub(super) fn along(&self, axis: usize, level: u8, number: u32, ends: [f64; 2]) -> &[Height] {
+    pub(super) fn along(&self, axis: usize, level: u8, number: u32, ends: [f64; 2]) -> &[Crossing] {
         let number = number << (self.level - level);
         let Some(line) = self.lines.get(&(axis, number)) else {
             return &[];
         };
-        let first = line.partition_point(|&[t, _]| t < ends[0]);
-        let last = line.partition_point(|&[t, _]| t <= ends[1]);
+        let first = line.partition_point(|&[t, ..]| t < ends[0]);
+        let last = line.partition_point(|&[t, ..]| t <= ends[1]);
         &line[first..last.max(first)]
     }
 
-    /// Returns the height where two lines of a level that is not finer cross.
-    pub(super) fn crossing(&self, level: u8, numbers: [u32; 2]) -> Option<f64> {
+    /// Returns the height where two lines of a level that is not finer cross, and how the surface
+    /// rises there.
+    pub(super) fn crossing(&self, level: u8, numbers: [u32; 2]) -> Option<[f64; 3]> {
         let numbers = numbers.map(|number| number << (self.level - level));
         self.crossings.get(&numbers).copied()
     }
 }
 
-/// Adds the position and the height at which an edge crosses a line; both ends of an edge on it.
-fn cross(p: [f64; 3], q: [f64; 3], axis: usize, at: f64, line: &mut Vec<Height>) {
+/// How a triangle rises along x and along y; not at all if it has no area.
+fn rise_of([a, b, c]: [[f64; 3]; 3]) -> [f64; 2] {
+    let [u, v] = [b, c].map(|p| [0, 1, 2].map(|k| p[k] - a[k]));
+    let area = u[0] * v[1] - u[1] * v[0];
+    let rise = [
+        (u[2] * v[1] - v[2] * u[1]) / area,
+        (v[2] * u[0] - u[2] * v[0]) / area,
+    ];
+    if rise.iter().all(|rise| rise.is_finite()) {
+        rise
+    } else {
+        [0.0; 2]
+    }
+}
+
+/// Passes on the position and the height at which an edge crosses a line; both ends of an edge on
+/// it.
+fn cross([p, q]: [[f64; 3]; 2], axis: usize, at: f64, add: &mut dyn FnMut(Height)) {
     // The same numbers from both sides of the edge.
     let [p, q] = if p[axis] <= q[axis] { [p, q] } else { [q, p] };
     if at < p[axis] || at > q[axis] {
@@ -111,15 +148,15 @@ fn cross(p: [f64; 3], q: [f64; 3], axis: usize, at: f64, line: &mut Vec<Height>)
     }
     let height_of = |p: [f64; 3]| [p[1 - axis], p[2]];
     if p[axis] == at {
-        line.push(height_of(p));
+        add(height_of(p));
     }
     if q[axis] == at {
-        line.push(height_of(q));
+        add(height_of(q));
     }
     if p[axis] < at && at < q[axis] {
         let t = (at - p[axis]) / (q[axis] - p[axis]);
         let [a, b] = [height_of(p), height_of(q)];
-        line.push([0, 1].map(|k| a[k] + t * (b[k] - a[k])));
+        add([0, 1].map(|k| a[k] + t * (b[k] - a[k])));
     }
 }
 
@@ -209,11 +246,38 @@ fn worst(
     worst.map(|(_, height)| height)
 }
 
-/// Returns heights with positions in steps from one end of a border to the other.
-pub(super) fn in_steps(heights: &[Height], [first, last]: [f64; 2]) -> Vec<Height> {
-    heights
+/// Returns the height of a border at a position along it, given its vertices in their order.
+pub(super) fn height_along(vertices: &[Height], t: f64) -> f64 {
+    let after = vertices.partition_point(|&[at, _]| at < t).max(1);
+    match vertices.get(after - 1..=after) {
+        Some(&[[a, from], [b, to]]) => from + (t - a) / (b - a) * (to - from),
+        _ => vertices.last().map_or(f64::NAN, |&[_, height]| height),
+    }
+}
+
+/// Returns how the surface rises at the vertices of a border: as in the mean of the crossings up to
+/// the vertices before and after it.
+pub(super) fn rises(crossings: &[Crossing], chain: &[(u16, i32)]) -> Vec<[f64; 2]> {
+    let limit = |i: usize| chain.get(i).map_or(f64::NAN, |&(at, _)| f64::from(at));
+    let rise = |i: usize| {
+        let [before, after] = [
+            limit(i.saturating_sub(1)),
+            limit((i + 1).min(chain.len() - 1)),
+        ];
+        let first = crossings.partition_point(|&[t, ..]| t < before);
+        let last = crossings.partition_point(|&[t, ..]| t <= after);
+        let near = &crossings[first..last.max(first)];
+        let mean = |k: usize| near.iter().map(|of| of[k]).sum::<f64>() / near.len().max(1) as f64;
+        [mean(2), mean(3)]
+    };
+    (0..chain.len()).map(rise).collect()
+}
+
+/// Returns crossings with positions in steps from one end of a border to the other.
+pub(super) fn in_steps(crossings: &[Crossing], [first, last]: [f64; 2]) -> Vec<Crossing> {
+    crossings
         .iter()
-        .map(|&[t, z]| [steps_between(t, first, last), z])
+        .map(|&[t, z, x, y]| [steps_between(t, first, last), z, x, y])
         .collect()
 }
 

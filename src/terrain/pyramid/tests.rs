@@ -1,3 +1,4 @@
+use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
 use rustc_hash::FxHashMap;
@@ -43,12 +44,43 @@ fn levels(pyramid: &Pyramid) -> std::ops::Range<usize> {
     7..pyramid.levels().len()
 }
 
-fn tiles_of(pyramid: &Pyramid, level: usize) -> Vec<(TerrainTile, TileReport)> {
-    let tiles = &pyramid.levels()[level].tiles;
-    tiles
-        .iter()
-        .map(|&at| pyramid.tile(at, &GO_ON).unwrap())
-        .collect()
+/// The tiles of each level, in the order of their positions.
+fn collect(pyramid: &mut Pyramid) -> Vec<Vec<(TerrainTile, TileReport)>> {
+    let tiles = Mutex::new(Vec::new());
+    let mut sums = Vec::new();
+    let take = |_: &Level, tile: TerrainTile, report: &TileReport| {
+        tiles.lock().unwrap().push((tile, *report));
+        Ok(())
+    };
+    let mut end = |_: &Level, of_level: &TileReport| {
+        sums.push(*of_level);
+        Ok(())
+    };
+    pyramid.make(&take, &mut end, &GO_ON).unwrap();
+    let mut levels = vec![Vec::new(); pyramid.levels().len()];
+    for (tile, report) in tiles.into_inner().unwrap() {
+        levels[usize::from(tile.at.level)].push((tile, report));
+    }
+    for (level, (tiles, sums)) in levels.iter_mut().zip(sums).enumerate() {
+        tiles.sort_by_key(|(tile, _)| tile.at);
+        let mut all = TileReport::default();
+        tiles.iter().for_each(|(_, report)| all.merge(report));
+        assert_eq!(all, sums);
+        let positions: Vec<TilePosition> = tiles.iter().map(|(tile, _)| tile.at).collect();
+        assert_eq!(positions, pyramid.levels()[level].tiles);
+    }
+    levels
+}
+
+/// The normals of a tile on a side, in the order of their vertices, as bits.
+fn normals_of_side(tile: &TerrainTile, axis: usize, at: u16) -> Vec<(u16, [u64; 3])> {
+    let with_normals = tile.vertices.iter().zip(&tile.normals);
+    let mut side: Vec<(u16, [u64; 3])> = with_normals
+        .filter(|(v, _)| v[axis] == at)
+        .map(|(v, normal)| (v[1 - axis], normal.map(f64::to_bits)))
+        .collect();
+    side.sort_unstable();
+    side
 }
 
 /// The vertices of a tile on a side, with the bits of their positions and heights.
@@ -88,12 +120,13 @@ fn borders_of_a_level_are_equal_to_the_bit() {
     for (seed, rule) in (0..).zip(rules()) {
         for on_lines in [false, true] {
             let surface = surface(seed, 900, on_lines);
-            let pyramid = pyramid(&surface, &rule);
+            let mut pyramid = pyramid(&surface, &rule);
+            let levels_of_tiles = collect(&mut pyramid);
             for level in levels(&pyramid) {
-                let tiles = tiles_of(&pyramid, level);
+                let tiles = &levels_of_tiles[level];
                 let by_position: FxHashMap<TilePosition, &TerrainTile> =
                     tiles.iter().map(|(tile, _)| (tile.at, tile)).collect();
-                for (tile, _) in &tiles {
+                for (tile, _) in tiles {
                     let TilePosition { level, column, row } = tile.at;
                     let others = [(column + 1, row), (column, row + 1)];
                     for (axis, (column, row)) in others.into_iter().enumerate() {
@@ -103,6 +136,9 @@ fn borders_of_a_level_are_equal_to_the_bit() {
                         };
                         let own = side(tile, axis, TerrainTile::STEPS);
                         assert_eq!(own, side(other, axis, 0), "{:?}", tile.at);
+                        let [own_normals, normals] = [(tile, TerrainTile::STEPS), (other, 0)]
+                            .map(|(tile, at)| normals_of_side(tile, axis, at));
+                        assert_eq!(own_normals, normals);
                         compared += own.len();
                     }
                 }
@@ -126,35 +162,25 @@ fn between_levels_borders_are_within_the_sum_of_the_bounds() {
     let mut judged = 0;
     for (seed, rule) in (40..).zip(rules()) {
         let surface = surface(seed, 900, seed % 2 == 0);
-        let pyramid = pyramid(&surface, &rule);
+        let mut pyramid = pyramid(&surface, &rule);
+        let levels_of_tiles = collect(&mut pyramid);
         for level in levels(&pyramid) {
-            let [coarse, fine] = [level - 1, level].map(|level| tiles_of(&pyramid, level));
+            let [coarse, fine] = [&levels_of_tiles[level - 1], &levels_of_tiles[level]];
             let bounds = [level - 1, level].map(|level| pyramid.levels()[level].allowance);
-            for (tile, _) in &fine {
+            for (tile, _) in fine {
                 let TilePosition { column, row, .. } = tile.at;
                 let above = |other: &&(TerrainTile, TileReport)| {
                     [other.0.at.column, other.0.at.row] == [column / 2, row / 2]
                 };
                 let (parent, _) = coarse.iter().find(above).unwrap();
-                let [min, max] = Tiling::Geographic.bounds(tile.at);
                 for (axis, at) in [(0, column), (1, row)] {
                     // The side of the tile that is on one of the tile above it.
                     let side_at = if at % 2 == 0 { 0 } else { TerrainTile::STEPS };
                     let [own, other] = [tile, parent].map(|tile| side(tile, axis, side_at));
+                    // Which half of the side above.
                     let half = f64::from([row, column][axis] % 2);
                     for _ in 0..200 {
                         let t = random.unit();
-                        let along = 1 - axis;
-                        let place = min[along] + t * (max[along] - min[along]);
-                        let across = if side_at == 0 { min[axis] } else { max[axis] };
-                        let start = [[7.0, 46.0][along], [7.0, 46.0][axis]];
-                        let is_inside = [place, across]
-                            .into_iter()
-                            .zip(start)
-                            .all(|(c, start)| c > start && c < start + SIDE);
-                        if !is_inside {
-                            continue;
-                        }
                         let heights = [
                             height_along(&own, t * 32_767.0),
                             height_along(&other, (t + half) / 2.0 * 32_767.0),
@@ -190,13 +216,14 @@ fn height_of(tile: &TerrainTile, at: [f64; 2]) -> Option<f64> {
 fn the_bound_holds_at_each_height_of_each_level() {
     for rule in rules() {
         let surface = surface(5, 700, false);
-        let pyramid = pyramid(&surface, &rule);
-        let points: Vec<[f64; 3]> = pyramid.points.clone();
+        let mut pyramid = pyramid(&surface, &rule);
+        let levels_of_tiles = collect(&mut pyramid);
+        let points: Vec<[f64; 3]> = pyramid.heights.points().to_vec();
         for level in levels(&pyramid) {
             let bound = pyramid.levels()[level].bound;
-            let tiles = tiles_of(&pyramid, level);
+            let tiles = &levels_of_tiles[level];
             let mut judged = 0;
-            for (tile, report) in &tiles {
+            for (tile, report) in tiles {
                 assert_eq!(report.beyond, 0, "{:?} {report:?}", tile.at);
                 let [min, max] = Tiling::Geographic.bounds(tile.at);
                 for &[x, y, z] in &points {
@@ -220,21 +247,21 @@ fn the_bound_holds_at_each_height_of_each_level() {
 /// In the middle of each triangle, the earth is above it by no more than the share of the bound.
 #[test]
 fn coarse_tiles_follow_the_earth() {
-    let pyramid = pyramid(&surface(3, 50, false), &rules()[0]);
+    let mut pyramid = pyramid(&surface(3, 50, false), &rules()[0]);
+    let levels_of_tiles = collect(&mut pyramid);
     for level in [0, 1, 4] {
         let Level {
             bound, allowance, ..
         } = pyramid.levels()[level];
-        for (tile, _) in tiles_of(&pyramid, level) {
-            let place = |p: [f64; 3]| geocentric(p);
+        for (tile, _) in &levels_of_tiles[level] {
             for face in &tile.triangles {
                 let corners =
                     face.map(|v| tile.position(Tiling::Geographic, tile.vertices[v as usize]));
                 let middle = |of: [[f64; 3]; 3]| {
                     [0, 1, 2].map(|k| of.iter().map(|p| p[k]).sum::<f64>() / 3.0)
                 };
-                let flat = middle(corners.map(place));
-                let curved = place(middle(corners));
+                let flat = middle(corners.map(geocentric));
+                let curved = geocentric(middle(corners));
                 let length = |p: [f64; 3]| p.iter().map(|c| c * c).sum::<f64>().sqrt();
                 let above = length(curved) - length(flat);
                 assert!(above < (bound - allowance) * 1.01 + 1.0, "{level} {above}");
@@ -243,14 +270,15 @@ fn coarse_tiles_follow_the_earth() {
     }
 }
 
-/// A tile is one square of triangles, without gaps and overlaps: its area is that of the square, and
-/// each edge inside has two triangles.
+/// A tile is one square of triangles, without gaps and overlaps: its area is that of the square,
+/// and each edge inside has two triangles.
 #[test]
 fn a_tile_is_covered_once() {
     let surface = surface(2, 500, true);
-    let pyramid = pyramid(&surface, &rules()[1]);
+    let mut pyramid = pyramid(&surface, &rules()[1]);
+    let levels_of_tiles = collect(&mut pyramid);
     for level in levels(&pyramid) {
-        for (tile, _) in tiles_of(&pyramid, level) {
+        for (tile, _) in &levels_of_tiles[level] {
             let mut doubled = 0;
             let mut edges: FxHashMap<[u32; 2], i32> = FxHashMap::default();
             for face in &tile.triangles {
@@ -307,10 +335,10 @@ fn a_border_depends_on_its_heights_alone_and_is_near_to_all() {
 fn what_cannot_be_tiled_is_refused() {
     let corners = vec![[7.0, 46.0, 1.0], [8.0, 46.0, 1.0], [7.0, 47.0, 1.0]];
     let mesh = Mesh::new(corners, vec![[0, 1, 2]], &[], None).unwrap();
-    let refused = |place: &(dyn Fn(&mut [[f64; 3]]) -> crate::Result<()> + Sync),
+    let refused = |convert: &(dyn Fn(&mut [[f64; 3]]) -> crate::Result<()> + Sync),
                    rule: PyramidRule| {
-        let made = Pyramid::new(&mesh, place, &rule, &GO_ON);
-        made.err().unwrap().to_string()
+        let planned = Pyramid::new(&mesh, convert, &rule, &GO_ON);
+        planned.err().unwrap().to_string()
     };
     let rule = PyramidRule::default();
     let far = |points: &mut [[f64; 3]]| {

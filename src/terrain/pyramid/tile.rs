@@ -4,8 +4,10 @@ use std::sync::atomic::AtomicBool;
 
 use rustc_hash::FxHashMap;
 
-use super::lines::{Chain, chain, height_on, in_steps, steps_between};
-use super::{Level, Pyramid};
+use super::heights::Heights;
+use super::lines::{Chain, Rises, chain, height_along, height_on, in_steps, rises, steps_between};
+use super::normals::normals;
+use super::rule::Level;
 use crate::data::{TerrainTile, TilePosition};
 use crate::error::{Error, Result};
 use crate::terrain::admitted::searched;
@@ -51,15 +53,26 @@ struct Work<'a> {
     triangulation: Delaunay<Terrain, 3>,
 }
 
-/// Makes one tile.
+/// The vertices that a tile has in any case: their positions and heights in steps.
+struct Frame {
+    vertices: Vec<([u16; 2], i32)>,
+    rises: Rises,
+}
+
+/// Heights outside of the surface, in corners of the grids of the tiles below: by the numbers of
+/// the lines that cross there.
+type Outside = Vec<([u32; 2], f64)>;
+
+/// Makes one tile, and what the tiles below it have to know of it.
 pub(super) fn tile(
-    pyramid: &Pyramid,
+    all: &Heights,
+    level: &Level,
+    finer: Option<&Level>,
     at: TilePosition,
     cancel: &AtomicBool,
-) -> Result<(TerrainTile, TileReport)> {
-    let level = &pyramid.levels[usize::from(at.level)];
-    let [min, max] = pyramid.rule.tiling.bounds(at);
-    let points = pyramid.points_of(at);
+) -> Result<(TerrainTile, TileReport, Outside)> {
+    let [min, max] = all.tiling.bounds(at);
+    let points = all.points_of(at);
     let heights: Vec<[f64; 3]> = points
         .iter()
         .map(|&[x, y, z]| {
@@ -68,14 +81,15 @@ pub(super) fn tile(
             [u, v, z]
         })
         .collect();
-    let kept = frame(pyramid, level, at);
+    let frame = Frame::of(all, level, at);
     let candidate = |&[u, v, z]: &[f64; 3]| {
         let [u, v] = [u, v].map(inner);
         [f64::from(u), f64::from(v), z]
     };
-    let mut sites: Vec<([f64; 3], bool)> = kept
-        .into_iter()
-        .map(|([u, v], height)| {
+    let mut sites: Vec<([f64; 3], bool)> = frame
+        .vertices
+        .iter()
+        .map(|&([u, v], height)| {
             let height = f64::from(height) * level.step;
             ([f64::from(u), f64::from(v), height], true)
         })
@@ -107,10 +121,12 @@ pub(super) fn tile(
         triangulation,
     };
     let mut report = work.repair(cancel)?;
-    let tile = work.finish(at)?;
+    let mut tile = work.finish(at)?;
+    tile.normals = normals(&tile, all.tiling, &frame.rises);
     report.vertices = tile.vertices.len();
     report.triangles = tile.triangles.len();
-    Ok((tile, report))
+    let outside = finer.map_or_else(Vec::new, |finer| work.outside(all, finer, &tile));
+    Ok((tile, report, outside))
 }
 
 /// A step inside of the tile: only vertices of borders are on them.
@@ -123,40 +139,57 @@ fn rounded([u, v, z]: [f64; 3], step: f64) -> [f64; 3] {
     [u, v, (z / step).round() * step]
 }
 
-/// The vertices that a tile has in any case: those of its borders, and a grid that follows the
-/// earth.
-fn frame(pyramid: &Pyramid, level: &Level, at: TilePosition) -> Vec<([u16; 2], i32)> {
-    let cells = level.grid;
-    let height = |i: u32, j: u32| (pyramid.height(level, at, [i, j]) / level.step).round() as i32;
-    let steps = |i: u32| (f64::from(STEPS) * f64::from(i) / f64::from(cells)).round() as u16;
-    let border = |axis: usize, far: u32| -> Chain {
-        let fixed: Vec<(u16, i32)> = (0..=cells)
-            .map(|k| match axis {
-                0 => (steps(k), height(far * cells, k)),
-                _ => (steps(k), height(k, far * cells)),
-            })
-            .collect();
-        let (heights, ends) = pyramid.along(at, axis, far);
-        chain(
-            &in_steps(heights, ends),
-            &fixed,
-            level.step,
-            level.allowance,
-        )
-    };
-    let mut frame = Vec::new();
-    for (far, side) in [(0, 0), (1, STEPS)] {
-        frame.extend(border(0, far).into_iter().map(|(v, z)| ([side, v], z)));
-        // Corners are on both.
-        let inner = border(1, far)
-            .into_iter()
-            .filter(|&(u, _)| u != 0 && u != STEPS);
-        frame.extend(inner.map(|(u, z)| ([u, side], z)));
+impl Frame {
+    /// The vertices of the borders, and those of a grid that follows the earth.
+    fn of(all: &Heights, level: &Level, at: TilePosition) -> Self {
+        let cells = level.grid;
+        let height = |i: u32, j: u32| (all.height(level, at, [i, j]) / level.step).round() as i32;
+        let steps = |i: u32| (f64::from(STEPS) * f64::from(i) / f64::from(cells)).round() as u16;
+        let mut frame = Frame {
+            vertices: Vec::new(),
+            rises: Rises::default(),
+        };
+        for axis in 0..2 {
+            for far in 0..2 {
+                let corner = |k: u32| match axis {
+                    0 => [far * cells, k],
+                    _ => [k, far * cells],
+                };
+                let position = |along: u16| {
+                    let across = STEPS * far as u16;
+                    if axis == 0 {
+                        [across, along]
+                    } else {
+                        [along, across]
+                    }
+                };
+                let fixed: Chain = (0..=cells)
+                    .map(|k| (steps(k), height(corner(k)[0], corner(k)[1])))
+                    .collect();
+                let (crossings, ends) = all.along(at, axis, far);
+                let crossings = in_steps(crossings, ends);
+                let heights: Vec<[f64; 2]> = crossings.iter().map(|&[t, z, ..]| [t, z]).collect();
+                let chain = chain(&heights, &fixed, level.step, level.allowance);
+                for (&(along, z), rise) in chain.iter().zip(rises(&crossings, &chain)) {
+                    let p = position(along);
+                    // Corners of the tile are on two borders.
+                    if frame.rises.insert(p, rise).is_none() {
+                        frame.vertices.push((p, z));
+                    }
+                }
+                // Other borders meet there: what all of them know is the surface in this point.
+                for k in 0..=cells {
+                    let rise = all.rise(level, at, corner(k));
+                    frame.rises.insert(position(steps(k)), rise);
+                }
+            }
+        }
+        for i in 1..cells {
+            let column = (1..cells).map(|j| ([steps(i), steps(j)], height(i, j)));
+            frame.vertices.extend(column);
+        }
+        frame
     }
-    for i in 1..cells {
-        frame.extend((1..cells).map(|j| ([steps(i), steps(j)], height(i, j))));
-    }
-    frame
 }
 
 impl Work<'_> {
@@ -172,19 +205,10 @@ impl Work<'_> {
             for &[u, v, z] in &self.heights {
                 let location = self.triangulation.locate(&[u, v, z], near);
                 near = location.cell(&self.triangulation).or(near);
-                let (off, cell) = match location {
-                    Location::Vertex(vertex) => {
-                        ((self.triangulation.point(vertex)[2] - z).abs(), None)
-                    }
-                    Location::Cell { cell, .. } => match self.triangulation.cell_points(cell) {
-                        Some(corners) => {
-                            let height = height_on(corners.map(|p| *p), [u, v]);
-                            ((height - z).abs(), Some(cell))
-                        }
-                        None => continue,
-                    },
-                    _ => continue,
+                let Some((height, cell)) = self.height_at(location, [u, v]) else {
+                    continue;
                 };
+                let off = (height - z).abs();
                 largest = largest.max(off);
                 // A margin for the roundings of viewers.
                 if off <= self.level.allowance * (1.0 - 1e-9) {
@@ -221,6 +245,62 @@ impl Work<'_> {
                     ..TileReport::default()
                 });
             }
+        }
+    }
+
+    /// The heights of the tile where the surface has none.
+    fn outside(&self, all: &Heights, finer: &Level, tile: &TerrainTile) -> Outside {
+        let cells = 2 * finer.grid;
+        let lines = tile.at.level + cells.trailing_zeros() as u8;
+        let steps = |k: u32| f64::from(STEPS) * f64::from(k) / f64::from(cells);
+        let side = |axis: usize, at: u16| -> Vec<[f64; 2]> {
+            let on_side = tile.vertices.iter().filter(|v| v[axis] == at);
+            let mut side: Vec<[f64; 2]> = on_side
+                .map(|v| [f64::from(v[1 - axis]), tile.height(v[2])])
+                .collect();
+            side.sort_unstable_by(|a, b| a[0].total_cmp(&b[0]));
+            side
+        };
+        let sides = [0, STEPS].map(|at| [0, 1].map(|axis| side(axis, at)));
+        let mut outside = Vec::new();
+        let mut near = None;
+        for i in 0..=cells {
+            for j in 0..=cells {
+                let numbers = [tile.at.column * cells + i, tile.at.row * cells + j];
+                if all.lines.crossing(lines, numbers).is_some() {
+                    continue;
+                }
+                let on_side = [(0, i, j), (1, j, i)]
+                    .into_iter()
+                    .find(|&(_, k, _)| k == 0 || k == cells);
+                let height = match on_side {
+                    // The same number in both tiles at the side.
+                    Some((axis, k, along)) => {
+                        height_along(&sides[usize::from(k > 0)][axis], steps(along))
+                    }
+                    None => {
+                        let q = [steps(i), steps(j)];
+                        let location = self.triangulation.locate(&[q[0], q[1], 0.0], near);
+                        near = location.cell(&self.triangulation).or(near);
+                        self.height_at(location, q).map_or(all.fill, |(z, _)| z)
+                    }
+                };
+                outside.push((numbers, height));
+            }
+        }
+        outside
+    }
+
+    /// The height of the triangles at a position that was located, with the triangle there unless
+    /// it is a vertex.
+    fn height_at(&self, location: Location, at: [f64; 2]) -> Option<(f64, Option<CellId>)> {
+        match location {
+            Location::Vertex(vertex) => Some((self.triangulation.point(vertex)[2], None)),
+            Location::Cell { cell, .. } => {
+                let corners = self.triangulation.cell_points(cell)?;
+                Some((height_on(corners.map(|p| *p), at), Some(cell)))
+            }
+            _ => None,
         }
     }
 
@@ -269,6 +349,7 @@ impl Work<'_> {
             lowest,
             vertices,
             triangles,
+            normals: Vec::new(),
         })
     }
 }

@@ -148,9 +148,9 @@ fn simplified(
     }
 }
 
-/// Chooses vertices among positions that are sorted by x, then y, each of which is there once: those
-/// that `stay`, the corners of the hull, and as few others as are found such that no height is
-/// further than the bound from the Delaunay triangulation of all that are chosen. Returns their
+/// Chooses vertices among positions that are sorted by x, then y, each of which is there once:
+/// those that `stay`, the corners of the hull, and as few others as are found such that no height
+/// is further than the bound from the Delaunay triangulation of all that are chosen. Returns their
 /// numbers, in ascending order.
 ///
 /// # Errors

@@ -36,8 +36,8 @@ pub(crate) enum TerrainFormatArg {
 /// bound, which is measured on the tiles as they are written. Tiles of a level have the same
 /// vertices on a common border.
 ///
-/// Positions are transformed to longitude and latitude by PROJ, in a build that has it. Heights must
-/// be above the ellipsoid of WGS 84, see --vertical-offset.
+/// Positions are transformed to longitude and latitude by PROJ, in a build that has it. Heights
+/// must be above the ellipsoid of WGS 84, see --vertical-offset.
 #[derive(Debug, Clone, Args)]
 #[command(after_long_help = "\
 Example:
@@ -76,8 +76,9 @@ pub(crate) struct TerrainTilesArgs {
 
     /// Bound of the finest level in meters; it doubles with each coarser level [default: by level]
     ///
-    /// By default it is what viewers expect of a level: 0.29 m at level 18, 1.2 m at level 16. Alone,
-    /// the option also chooses the finest level: the first one of which viewers expect no more.
+    /// By default it is what viewers expect of a level: 0.29 m at level 18, 1.2 m at level 16.
+    /// Alone, the option also chooses the finest level: the first one of which viewers expect no
+    /// more.
     #[arg(long, value_name = "METERS", value_parser = positive, allow_negative_numbers = true, help_heading = "Tiles")]
     pub(crate) max_error: Option<f64>,
 
@@ -96,9 +97,9 @@ pub(crate) struct TerrainTilesArgs {
 
     /// Height of the geoid above the ellipsoid, which is added to heights
     ///
-    /// Viewers need heights above the ellipsoid of WGS 84. Most surveys have heights above the geoid
-    /// or another level of the sea, which is up to 105 m below and 85 m above it. Pass 0 if the
-    /// heights are above the ellipsoid.
+    /// Viewers need heights above the ellipsoid of WGS 84. Most surveys have heights above the
+    /// geoid or another level of the sea, which is up to 105 m below and 85 m above it. Pass 0 if
+    /// the heights are above the ellipsoid.
     #[arg(
         long,
         value_name = "METERS",

@@ -9,7 +9,7 @@ mod read;
 mod write;
 
 pub(crate) use read::read;
-pub(crate) use write::{head, normals, write};
+pub(crate) use write::{head, write};
 
 /// The first bytes, and the types of the two chunks.
 const MAGIC: &[u8; 4] = b"glTF";

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::{BIN, BYTE, EXTRAS, FLOAT, INT, JSON, MAGIC, VERSION};
 use crate::crs::Crs;
-use crate::data::{Bounds, ColorMatch, Colors};
+use crate::data::{Bounds, ColorMatch, Colors, vertex_normals};
 use crate::error::{Error, Result};
 use crate::io::Destination;
 use crate::io::bytes::lines::{row_of, write_rows};
@@ -209,7 +209,7 @@ fn write_arrays(
 ) -> Result<()> {
     let floats = |p: [f32; 3]| row_of(p.map(f32::to_le_bytes));
     write_rows(output, mesh.vertices().map(|p| floats(local.floats(p))))?;
-    let normals = normals(mesh.vertex_count, mesh.faces().zip(mesh.triangles())).into_iter();
+    let normals = vertex_normals(mesh.vertex_count, mesh.faces().zip(mesh.triangles())).into_iter();
     write_rows(
         output,
         normals.map(|[x, y, z]| floats([x, z, -y].map(|c| c as f32))),
@@ -227,32 +227,4 @@ fn colors(bounds: &Bounds) -> Colors {
     ramp::built_in(RAMP)
         .unwrap_or_default()
         .over(Some(range), ColorMatch::Linear)
-}
-
-/// Returns the normal of each of `count` vertices: those of its faces, by their areas. A face is
-/// given with its corners and their positions.
-pub(crate) fn normals(
-    count: usize,
-    faces: impl Iterator<Item = ([u32; 3], [[f64; 3]; 3])>,
-) -> Vec<[f64; 3]> {
-    let mut normals = vec![[0.0; 3]; count];
-    for (face, [a, b, c]) in faces {
-        let [u, v] = [b, c].map(|p| [0, 1, 2].map(|k| p[k] - a[k]));
-        let turn = |k: usize| {
-            let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-            u[i] * v[j] - u[j] * v[i]
-        };
-        for vertex in face {
-            let normal: &mut [f64; 3] = &mut normals[vertex as usize];
-            (0..3).for_each(|k| normal[k] += turn(k));
-        }
-    }
-    for normal in &mut normals {
-        let length = normal.iter().map(|c| c * c).sum::<f64>().sqrt();
-        *normal = match length.is_normal() {
-            true => normal.map(|c| c / length),
-            false => [0.0, 0.0, 1.0],
-        };
-    }
-    normals
 }

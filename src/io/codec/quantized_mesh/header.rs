@@ -25,12 +25,12 @@ pub(super) struct Header {
 
 impl Header {
     pub(super) fn of(tile: &TerrainTile, tiling: Tiling) -> Self {
-        let place = |steps: [u16; 3]| {
+        let on_earth = |steps: [u16; 3]| {
             let [x, y, z] = tile.position(tiling, steps);
             let [longitude, latitude] = tiling.degrees([x, y]);
             geocentric([longitude, latitude, z])
         };
-        let positions: Vec<[f64; 3]> = tile.vertices.iter().map(|&steps| place(steps)).collect();
+        let positions: Vec<[f64; 3]> = tile.vertices.iter().map(|&steps| on_earth(steps)).collect();
         let mut bounds = crate::data::Bounds::default();
         positions.iter().for_each(|&p| bounds.add(p));
         let middle = [0, 1, 2].map(|k| (bounds.min[k] + bounds.max[k]) / 2.0);
@@ -40,7 +40,7 @@ impl Header {
             .fold(0.0, f64::max);
         let half = TerrainTile::STEPS / 2;
         Header {
-            center: place([half; 3]),
+            center: on_earth([half; 3]),
             range: tile.range(),
             sphere: (middle, radius),
             horizon: horizon(middle, &positions),

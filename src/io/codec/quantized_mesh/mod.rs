@@ -9,9 +9,8 @@
 //! | | written | read |
 //! |---|---|---|
 //! | vertices, triangles, borders | yes | yes |
-//! | normals of vertices (extension 1) | as asked for | skipped |
-//! | water (extension 2) | as asked for | skipped |
-//! | metadata (extension 4) | no | skipped |
+//! | normals of vertices (extension 1) | yes | as bytes |
+//! | water (extension 2), metadata (extension 4) | no | skipped |
 //!
 //! See <https://github.com/CesiumGS/quantized-mesh>.
 
@@ -31,3 +30,6 @@ const HEADER: usize = 88;
 
 /// Up to so many vertices, their numbers are written in 16 bits.
 const SHORT: usize = 65_536;
+
+/// The number of the extension with normals.
+const NORMALS: u8 = 1;

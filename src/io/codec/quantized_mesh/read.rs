@@ -1,6 +1,6 @@
 //! Reading a tile.
 
-use super::{HEADER, SHORT};
+use super::{HEADER, NORMALS, SHORT};
 use crate::data::TerrainTile;
 use crate::error::{Error, Result};
 
@@ -15,6 +15,8 @@ pub struct DecodedTile {
     pub triangles: Vec<[u32; 3]>,
     /// The vertices on the west, south, east and north side.
     pub borders: [Vec<u32>; 4],
+    /// The normal of each vertex in two bytes, by an octahedron, if there are any.
+    pub normals: Vec<[u8; 2]>,
     /// The numbers of the extensions.
     pub extensions: Vec<u8>,
 }
@@ -150,16 +152,30 @@ pub fn decode(bytes: &[u8]) -> Result<DecodedTile> {
         }
     }
     let mut extensions = Vec::new();
+    let mut normals = Vec::new();
     while !rest.bytes.is_empty() {
-        extensions.extend(rest.take(1, "an extension")?);
+        let number = rest.take(1, "an extension")?;
+        extensions.extend(number);
         let length = rest.count("the length of an extension")?;
-        rest.take(length, "an extension")?;
+        let content = rest.take(length, "an extension")?;
+        if number == [NORMALS] {
+            if length != 2 * count {
+                return Err(Error::format(format!(
+                    "{length} bytes of normals for {count} vertices, which need two each"
+                )));
+            }
+            normals = content
+                .chunks_exact(2)
+                .map(|pair| [pair[0], pair[1]])
+                .collect();
+        }
     }
     Ok(DecodedTile {
         range,
         vertices,
         triangles,
         borders,
+        normals,
         extensions,
     })
 }

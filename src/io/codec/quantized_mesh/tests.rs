@@ -16,6 +16,7 @@ fn square(level: u8) -> TerrainTile {
         lowest: -3,
         vertices: vec![[0, 0, 5], [all, 0, 0], [0, all, 9], [all, all, all]],
         triangles: vec![[0, 1, 2], [2, 1, 3]],
+        normals: Vec::new(),
     }
 }
 
@@ -91,7 +92,7 @@ fn what_the_header_promises_holds() {
         let double = |k: usize| f64::from_le_bytes(bytes[k..k + 8].try_into().unwrap());
         let triple = |k: usize| [double(k), double(k + 8), double(k + 16)];
         let (center, radius, horizon) = (triple(32), double(56), triple(64));
-        let places: Vec<[f64; 3]> = tile
+        let corners: Vec<[f64; 3]> = tile
             .vertices
             .iter()
             .map(|&v| geocentric(tile.position(Tiling::Geographic, v)))
@@ -102,7 +103,7 @@ fn what_the_header_promises_holds() {
                 .sum::<f64>()
                 .sqrt()
         };
-        assert!(places.iter().all(|p| off(p) <= radius * (1.0 + 1e-12)));
+        assert!(corners.iter().all(|p| off(p) <= radius * (1.0 + 1e-12)));
         // On the unit sphere, a point is hidden if it is beyond the tangent plane and in its cone.
         let is_hidden = |eye: [f64; 3], p: [f64; 3]| {
             let dot = |a: [f64; 3], b: [f64; 3]| (0..3).map(|k| a[k] * b[k]).sum::<f64>();
@@ -111,7 +112,7 @@ fn what_the_header_promises_holds() {
             let along = -dot(to, eye);
             along > beyond && along * along > beyond * dot(to, to)
         };
-        let scaled: Vec<[f64; 3]> = places
+        let scaled: Vec<[f64; 3]> = corners
             .iter()
             .map(|p| [0, 1, 2].map(|k| p[k] / SEMI_AXES[k] * (1.0 - 1e-9)))
             .collect();
@@ -151,5 +152,41 @@ fn damaged_tiles_are_refused_without_a_panic() {
             .unwrap_err()
             .to_string()
             .contains("gzip")
+    );
+}
+
+#[test]
+fn normals_come_back_up_to_a_step_of_their_bytes() {
+    let mut random = Random(31);
+    let mut tile = strip(500);
+    tile.normals = (0..500)
+        .map(|_| {
+            let direction = [0; 3].map(|_| 2.0 * random.unit() - 1.0);
+            crate::data::unit(direction).unwrap()
+        })
+        .collect();
+    tile.normals[0] = [0.0, 0.0, -1.0];
+    let read = decode(&encode(&tile, Tiling::Geographic)).unwrap();
+    assert_eq!(read.extensions, [1]);
+    for (normal, bytes) in tile.normals.iter().zip(read.normals) {
+        // As in the paper, and in CesiumJS.
+        let [x, y] = bytes.map(|byte| f64::from(byte) / 255.0 * 2.0 - 1.0);
+        let z = 1.0 - x.abs() - y.abs();
+        let [x, y] = match z < 0.0 {
+            true => [(1.0 - y.abs()).copysign(x), (1.0 - x.abs()).copysign(y)],
+            false => [x, y],
+        };
+        let back = crate::data::unit([x, y, z]).unwrap();
+        let cos: f64 = (0..3).map(|k| normal[k] * back[k]).sum();
+        assert!(cos > 0.9998, "{normal:?} {back:?}");
+    }
+    let mut bytes = encode(&tile, Tiling::Geographic);
+    let at = bytes.len() - 1000 - 4;
+    bytes[at..at + 4].copy_from_slice(&998_u32.to_le_bytes());
+    bytes.truncate(at + 4 + 998);
+    let refused = decode(&bytes).unwrap_err().to_string();
+    assert!(
+        refused.contains("998 bytes of normals for 500 vertices"),
+        "{refused}"
     );
 }

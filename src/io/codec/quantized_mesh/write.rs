@@ -1,13 +1,14 @@
 //! Writing a tile.
 
-use super::SHORT;
 use super::header::Header;
+use super::{NORMALS, SHORT};
 use crate::data::{TerrainTile, Tiling};
 
 /// Returns the bytes of a tile, which are not compressed.
 ///
-/// Vertices are in the order of their first use by a triangle, as [`TerrainTile`]s of a pyramid
-/// have them; others are put into this order.
+/// The normals are left out unless there is one for each vertex. Vertices are in the order of their
+/// first use by a triangle, as [`TerrainTile`]s of a pyramid have them; others are put into this
+/// order.
 pub fn encode(tile: &TerrainTile, tiling: Tiling) -> Vec<u8> {
     let (order, triangles) = by_first_use(tile);
     let vertices: Vec<[u16; 3]> = order.iter().map(|&v| tile.vertices[v as usize]).collect();
@@ -45,7 +46,25 @@ pub fn encode(tile: &TerrainTile, tiling: Tiling) -> Vec<u8> {
         bytes.extend((border.len() as u32).to_le_bytes());
         border.iter().for_each(|&v| number(v, &mut bytes));
     }
+    if tile.normals.len() == tile.vertices.len() {
+        let normals = order.iter().map(|&v| octahedral(tile.normals[v as usize]));
+        bytes.push(NORMALS);
+        bytes.extend((2 * count).to_le_bytes());
+        bytes.extend(normals.flatten());
+    }
     bytes
+}
+
+/// A direction in two bytes: projected to an octahedron, whose lower half is folded outwards
+/// (Cigolle et al. 2014, "A survey of efficient representations for independent unit vectors").
+fn octahedral(normal: [f64; 3]) -> [u8; 2] {
+    let sum: f64 = normal.iter().map(|c| c.abs()).sum();
+    let [x, y] = [normal[0] / sum, normal[1] / sum];
+    let folded = match normal[2] < 0.0 {
+        true => [(1.0 - y.abs()).copysign(x), (1.0 - x.abs()).copysign(y)],
+        false => [x, y],
+    };
+    folded.map(|c| ((c.clamp(-1.0, 1.0) * 0.5 + 0.5) * 255.0).round() as u8)
 }
 
 fn header(header: &Header, bytes: &mut Vec<u8>) {

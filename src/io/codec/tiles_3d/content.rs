@@ -6,7 +6,7 @@ use serde_json::json;
 use crate::crs::geocentric;
 use crate::data::{Bounds, TerrainTile, Tiling};
 use crate::error::Result;
-use crate::io::codec::glb::{FLOAT, INT, head, normals};
+use crate::io::codec::glb::{FLOAT, INT, head};
 
 /// The vertices of a tile on the earth, and those of its skirts.
 struct Shape {
@@ -14,8 +14,6 @@ struct Shape {
     /// For each vertex the one whose normal it has.
     normal_of: Vec<u32>,
     triangles: Vec<[u32; 3]>,
-    /// So many triangles are of the surface; the others are of skirts.
-    of_surface: usize,
 }
 
 /// Returns the bytes of a GLB file: the triangles of a tile, and a skirt of some depth in meters
@@ -28,7 +26,6 @@ pub fn content(tile: &TerrainTile, tiling: Tiling, depth: f64) -> Result<Vec<u8>
     let mut bounds = Bounds::default();
     shape.positions.iter().for_each(|&p| bounds.add(p));
     let origin = [0, 1, 2].map(|k| ((bounds.min[k] + bounds.max[k]) / 2.0).round());
-    let normals = shape.normals();
     let floats = |[x, y, z]: [f64; 3]| [x, z, -y].map(|c| c as f32);
     let local = |p: &[f64; 3]| floats([0, 1, 2].map(|k| p[k] - origin[k]));
     let (count, faces) = (shape.positions.len(), shape.triangles.len());
@@ -42,7 +39,8 @@ pub fn content(tile: &TerrainTile, tiling: Tiling, depth: f64) -> Result<Vec<u8>
         }
     }
     for &vertex in &shape.normal_of {
-        let normal = floats(normals[vertex as usize]);
+        let normal = tile.normals.get(vertex as usize);
+        let normal = floats(normal.copied().unwrap_or([0.0, 0.0, 1.0]));
         normal.iter().for_each(|c| arrays.extend(c.to_le_bytes()));
     }
     let corners = shape.triangles.iter().flatten();
@@ -91,16 +89,15 @@ pub fn content(tile: &TerrainTile, tiling: Tiling, depth: f64) -> Result<Vec<u8>
 
 impl Shape {
     fn of(tile: &TerrainTile, tiling: Tiling, depth: f64) -> Self {
-        let place = |steps: [u16; 3], below: f64| {
+        let on_earth = |steps: [u16; 3], below: f64| {
             let [x, y, z] = tile.position(tiling, steps);
             let [longitude, latitude] = tiling.degrees([x, y]);
             geocentric([longitude, latitude, z - below])
         };
         let mut shape = Shape {
-            positions: tile.vertices.iter().map(|&v| place(v, 0.0)).collect(),
+            positions: tile.vertices.iter().map(|&v| on_earth(v, 0.0)).collect(),
             normal_of: (0..tile.vertices.len() as u32).collect(),
             triangles: tile.triangles.clone(),
-            of_surface: tile.triangles.len(),
         };
         let is_on = |v: u32, axis: usize, at: u16| tile.vertices[v as usize][axis] == at;
         let mut lower: FxHashMap<u32, u32> = FxHashMap::default();
@@ -119,7 +116,7 @@ impl Shape {
                     *lower.entry(v).or_insert_with(|| {
                         shape
                             .positions
-                            .push(place(tile.vertices[v as usize], depth));
+                            .push(on_earth(tile.vertices[v as usize], depth));
                         shape.normal_of.push(v);
                         shape.positions.len() as u32 - 1
                     })
@@ -130,14 +127,5 @@ impl Shape {
             }
         }
         shape
-    }
-
-    /// The normals of the vertices of the surface.
-    fn normals(&self) -> Vec<[f64; 3]> {
-        let faces = self.triangles[..self.of_surface].iter();
-        normals(
-            self.positions.len(),
-            faces.map(|face| (*face, face.map(|v| self.positions[v as usize]))),
-        )
     }
 }

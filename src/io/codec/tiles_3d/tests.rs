@@ -168,6 +168,7 @@ fn a_tile_is_on_the_earth_with_skirts_around_it() {
             [900, 700, 80],
         ],
         triangles: vec![[0, 1, 4], [1, 3, 4], [3, 2, 4], [2, 0, 4]],
+        normals: vec![[0.0, 0.0, 1.0]; 5],
     };
     let bytes = content(&tile, Tiling::Geographic, 7.0).unwrap();
     let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
@@ -180,7 +181,7 @@ fn a_tile_is_on_the_earth_with_skirts_around_it() {
         .map(|c| c.as_f64().unwrap())
         .collect();
     let float = |k: usize| f64::from(f32::from_le_bytes(bin[k..k + 4].try_into().unwrap()));
-    let place = |v: usize| {
+    let read = |v: usize| {
         let [x, up, south] = [0, 1, 2].map(|k| float(12 * v + 4 * k) + origin[k]);
         [x, -south, up]
     };
@@ -191,14 +192,14 @@ fn a_tile_is_on_the_earth_with_skirts_around_it() {
     let far = |p: [f64; 3], q: [f64; 3]| (0..3).map(|k| (p[k] - q[k]).powi(2)).sum::<f64>().sqrt();
     assert_eq!(json["accessors"][0]["count"], 9);
     for (v, &steps) in tile.vertices.iter().enumerate() {
-        assert!(far(place(v), on_earth(steps, 0.0)) < 1e-3);
+        assert!(far(read(v), on_earth(steps, 0.0)) < 1e-3);
     }
     let corners = |p: [f64; 3]| {
         tile.vertices[..4]
             .iter()
             .any(|&v| far(p, on_earth(v, 7.0)) < 1e-3)
     };
-    assert!((5..9).all(|v| corners(place(v))));
+    assert!((5..9).all(|v| corners(read(v))));
     assert_eq!(json["accessors"][2]["count"], 3 * (4 + 8));
     let index = |k: usize| {
         let k = 24 * 9 + 4 * k;
@@ -206,7 +207,7 @@ fn a_tile_is_on_the_earth_with_skirts_around_it() {
     };
     let middle = on_earth([all / 2, all / 2, 0], 3.0);
     for face in 0..12 {
-        let [a, b, c] = [0, 1, 2].map(|k| place(index(3 * face + k)));
+        let [a, b, c] = [0, 1, 2].map(|k| read(index(3 * face + k)));
         let [u, v] = [b, c].map(|p| [0, 1, 2].map(|k| p[k] - a[k]));
         let normal = [0, 1, 2].map(|k| {
             let (i, j) = ((k + 1) % 3, (k + 2) % 3);

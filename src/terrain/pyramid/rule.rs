@@ -1,0 +1,122 @@
+//! Which levels a pyramid has, and how near they are to the surface.
+
+use crate::data::{TilePosition, Tiling};
+use crate::error::{Error, Result, Setting, wording};
+use crate::triangulation::kernel::RANGE;
+
+/// How many heights the tiles of the finest level have along a side, if nothing else is asked for.
+const HEIGHTS_ALONG: f64 = 64.0;
+
+/// The largest radius of the earth, in meters.
+const RADIUS: f64 = 6_378_137.0;
+
+/// The share of the bound that the curve of the earth may take: a triangle is flat.
+const CURVE_SHARE: f64 = 1.0 / 8.0;
+
+/// The largest number of squares along a side in which a tile follows the curve of the earth.
+const MAX_GRID: u32 = 256;
+
+/// The levels of a surface that are asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+pub struct PyramidRule {
+    /// The division into tiles.
+    pub tiling: Tiling,
+    /// The finest level. `None` follows from the bound, or from how dense the heights are: the
+    /// coarsest level with no more than 64 heights along the side of a tile.
+    pub finest: Option<u8>,
+    /// The bound of the finest level in meters; it doubles with each coarser level. `None` is
+    /// [`Tiling::geometric_error`].
+    pub max_error: Option<f64>,
+    /// The height in meters around the surface, at the coarsest level. `None` is the lowest height
+    /// of the surface.
+    pub fill: Option<f64>,
+}
+
+/// A level of a pyramid.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Level {
+    /// 0 for the level with the largest tiles.
+    pub level: u8,
+    /// No height of the surface is further from the triangles than this, in meters.
+    pub bound: f64,
+    /// What of the bound is left for heights: the rest is what the earth is curved within a
+    /// triangle.
+    pub allowance: f64,
+    /// The size of a step of height, in meters; a power of two. 0 until the level is made.
+    pub step: f64,
+    /// How many squares a tile has at least along each side, to follow the curve of the earth; a
+    /// power of two.
+    pub grid: u32,
+    /// The tiles, in the order of columns, then rows.
+    pub tiles: Vec<TilePosition>,
+}
+
+impl PyramidRule {
+    /// Returns an error if the rule makes no sense, whatever the surface is.
+    ///
+    /// # Errors
+    /// Names the setting.
+    pub fn check(&self) -> Result<()> {
+        if let Some(level) = self.finest.filter(|&level| level > Tiling::MAX_LEVEL) {
+            return Err(
+                Error::usage(format!("there is no level {level}")).cure(wording![
+                    "pass ",
+                    Setting::MaxLevel.number("LEVEL"),
+                    " with a level of 0 to 28"
+                ]),
+            );
+        }
+        if let Some(bound) = self.max_error
+            && !(bound > 0.0 && RANGE.admits(bound))
+        {
+            return Err(Error::usage(format!(
+                "{bound} is not a bound of errors: a height above 0 is needed"
+            ))
+            .cure(wording!["pass ", Setting::MaxError.number("HEIGHT")]));
+        }
+        match self.fill {
+            Some(fill) if !fill.is_finite() => Err(Error::usage(format!(
+                "{fill} is not a height around the surface"
+            ))),
+            _ => Ok(()),
+        }
+    }
+
+    /// Returns the finest level: as asked for, or what the bound or the heights need.
+    pub(super) fn finest(&self, in_tiles: impl Fn(u8) -> f64) -> u8 {
+        let all = 0..=Tiling::MAX_LEVEL;
+        let found = match (self.finest, self.max_error) {
+            (Some(level), _) => Some(level),
+            (None, Some(bound)) => {
+                (all.clone()).find(|&level| self.tiling.geometric_error(level) <= bound)
+            }
+            (None, None) => {
+                (all.clone()).find(|&level| in_tiles(level) <= HEIGHTS_ALONG * HEIGHTS_ALONG)
+            }
+        };
+        found.unwrap_or(Tiling::MAX_LEVEL)
+    }
+
+    /// Returns the bound of a level.
+    pub(super) fn bound(&self, level: u8, finest: u8) -> f64 {
+        let of_finest = self
+            .max_error
+            .unwrap_or_else(|| self.tiling.geometric_error(finest));
+        of_finest * f64::from(1_u32 << (finest - level))
+    }
+
+    /// Returns how many squares a tile needs along a side to follow the earth, and by how much the
+    /// earth is still above their triangles.
+    pub(super) fn grid(&self, level: u8, bound: f64) -> (u32, f64) {
+        let above = |cells: u32| {
+            let diagonal = std::f64::consts::SQRT_2 * self.tiling.angle(level) / f64::from(cells);
+            RADIUS * diagonal * diagonal / 8.0
+        };
+        let mut cells = 1;
+        while above(cells) > bound * CURVE_SHARE && cells < MAX_GRID {
+            cells *= 2;
+        }
+        (cells, above(cells).min(bound / 2.0))
+    }
+}
