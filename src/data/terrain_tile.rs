@@ -1,5 +1,7 @@
 use std::f64::consts::PI;
 
+use crate::error::{Error, Result};
+
 /// The semi-major axis of WGS 84, in meters.
 const RADIUS: f64 = 6_378_137.0;
 
@@ -21,6 +23,11 @@ pub enum Tiling {
     Geographic,
     /// Web Mercator (EPSG:3857), from one tile.
     WebMercator,
+}
+
+/// The number of rows of a level.
+fn rows(level: u8) -> u32 {
+    1 << level.min(Tiling::MAX_LEVEL)
 }
 
 /// The position of a tile: its level, and its column and row at this level.
@@ -46,9 +53,10 @@ impl Tiling {
         }
     }
 
-    /// Returns the numbers of columns and rows at a level.
+    /// Returns the numbers of columns and rows at a level. A level beyond the finest one counts as
+    /// that, here and in all that follows.
     pub fn size(self, level: u8) -> [u32; 2] {
-        let rows = 1 << level;
+        let rows = rows(level);
         match self {
             Tiling::Geographic => [2 * rows, rows],
             Tiling::WebMercator => [rows, rows],
@@ -69,7 +77,7 @@ impl Tiling {
             Tiling::Geographic => 180.0,
             Tiling::WebMercator => 2.0 * MERCATOR,
         };
-        whole / f64::from(1_u32 << level)
+        whole / f64::from(rows(level))
     }
 
     /// Returns the angle that a tile spans at the equator, in radians.
@@ -78,7 +86,7 @@ impl Tiling {
             Tiling::Geographic => PI,
             Tiling::WebMercator => 2.0 * PI,
         };
-        whole / f64::from(1_u32 << level)
+        whole / f64::from(rows(level))
     }
 
     /// Returns the x (axis 0) or y (axis 1) of a line between tiles, the first of which is 0: the
@@ -162,6 +170,21 @@ impl TerrainTile {
     /// Returns the lowest height that a vertex can have, and the highest.
     pub fn range(&self) -> [f64; 2] {
         [self.height(0), self.height(Self::STEPS)]
+    }
+
+    /// Returns an error if a triangle names a vertex that does not exist.
+    ///
+    /// # Errors
+    /// Names the vertex.
+    pub fn check(&self) -> Result<()> {
+        let count = self.vertices.len();
+        let mut corners = self.triangles.iter().flatten();
+        match corners.find(|&&v| v as usize >= count) {
+            None => Ok(()),
+            Some(v) => Err(Error::format(format!(
+                "vertex {v} of a tile does not exist: there are {count}, counted from 0"
+            ))),
+        }
     }
 
     /// Returns x and y in the coordinates of a tiling, and the height in meters.

@@ -241,7 +241,7 @@ impl Layout {
 
     fn bytes(&self, tile: &TerrainTile, level: &Level) -> Result<Vec<u8>> {
         match self {
-            Layout::QuantizedMesh { tiling, .. } => Ok(encode(tile, *tiling)),
+            Layout::QuantizedMesh { tiling, .. } => encode(tile, *tiling),
             Layout::Tiles3d { .. } => tiles_3d::content(tile, Tiling::Geographic, skirt(level)),
         }
     }

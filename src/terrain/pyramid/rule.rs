@@ -114,7 +114,10 @@ impl PyramidRule {
             RADIUS * diagonal * diagonal / 8.0
         };
         let mut cells = 1;
-        while above(cells) > bound * CURVE_SHARE && cells < MAX_GRID {
+        // Lines of the grid are lines between tiles of a finer level.
+        let is_finest =
+            |cells: u32| u32::from(level) + cells.trailing_zeros() >= u32::from(Tiling::MAX_LEVEL);
+        while above(cells) > bound * CURVE_SHARE && cells < MAX_GRID && !is_finest(cells) {
             cells *= 2;
         }
         (cells, above(cells).min(bound / 2.0))

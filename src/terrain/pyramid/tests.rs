@@ -358,6 +358,11 @@ fn what_cannot_be_tiled_is_refused() {
     };
     assert!(refused(&here, level(29)).contains("there is no level 29"));
     assert!(refused(&here, level(28)).contains("tiles of the surface"));
+    let tiny = PyramidRule {
+        max_error: Some(1e-12),
+        ..rule
+    };
+    assert!(refused(&here, tiny).contains("tiles of the surface"));
     let bound = PyramidRule {
         max_error: Some(0.0),
         ..rule

@@ -23,6 +23,9 @@ pub struct DecodedTile {
 
 impl DecodedTile {
     /// Returns the height of a vertex in meters.
+    ///
+    /// # Panics
+    /// If there is no vertex with this number.
     pub fn height(&self, vertex: u32) -> f64 {
         let [low, high] = self.range;
         let steps = f64::from(self.vertices[vertex as usize][2]);

@@ -47,7 +47,7 @@ fn a_tile_comes_back() {
         strip(SHORT),
         strip(SHORT + 1),
     ] {
-        let read = decode(&encode(&tile, Tiling::Geographic)).unwrap();
+        let read = decode(&encode(&tile, Tiling::Geographic).unwrap()).unwrap();
         assert_eq!(read.vertices, tile.vertices);
         assert_eq!(read.triangles, tile.triangles);
         assert_eq!(read.range, tile.range());
@@ -55,7 +55,7 @@ fn a_tile_comes_back() {
             assert_eq!(read.height(vertex), tile.height(steps[2]));
         }
     }
-    let read = decode(&encode(&square(2), Tiling::WebMercator)).unwrap();
+    let read = decode(&encode(&square(2), Tiling::WebMercator).unwrap()).unwrap();
     assert_eq!(
         read.borders,
         [vec![0, 2], vec![0, 1], vec![1, 3], vec![2, 3]]
@@ -63,10 +63,19 @@ fn a_tile_comes_back() {
 }
 
 #[test]
+fn a_vertex_that_does_not_exist_is_refused() {
+    let mut tile = square(4);
+    tile.triangles[1][0] = 4;
+    let refused = encode(&tile, Tiling::Geographic).unwrap_err().to_string();
+    assert!(refused.contains("vertex 4 of a tile"), "{refused}");
+    assert!(crate::io::tiles_3d::content(&tile, Tiling::Geographic, 1.0).is_err());
+}
+
+#[test]
 fn vertices_are_put_in_the_order_of_their_use() {
     let mut tile = square(4);
     tile.triangles = vec![[3, 2, 1], [2, 0, 1]];
-    let read = decode(&encode(&tile, Tiling::Geographic)).unwrap();
+    let read = decode(&encode(&tile, Tiling::Geographic).unwrap()).unwrap();
     let position = |mesh: &[[u16; 3]], face: [u32; 3]| face.map(|v| mesh[v as usize]);
     let before: Vec<_> = tile
         .triangles
@@ -88,7 +97,7 @@ fn what_the_header_promises_holds() {
     let mut random = Random(8);
     for level in 0..16 {
         let tile = square(level);
-        let bytes = encode(&tile, Tiling::Geographic);
+        let bytes = encode(&tile, Tiling::Geographic).unwrap();
         let double = |k: usize| f64::from_le_bytes(bytes[k..k + 8].try_into().unwrap());
         let triple = |k: usize| [double(k), double(k + 8), double(k + 16)];
         let (center, radius, horizon) = (triple(32), double(56), triple(64));
@@ -132,7 +141,7 @@ fn what_the_header_promises_holds() {
 #[test]
 fn damaged_tiles_are_refused_without_a_panic() {
     let mut random = Random(77);
-    let good = encode(&strip(200), Tiling::Geographic);
+    let good = encode(&strip(200), Tiling::Geographic).unwrap();
     for length in 0..good.len() {
         assert!(decode(&good[..length]).is_err(), "{length}");
     }
@@ -166,7 +175,7 @@ fn normals_come_back_up_to_a_step_of_their_bytes() {
         })
         .collect();
     tile.normals[0] = [0.0, 0.0, -1.0];
-    let read = decode(&encode(&tile, Tiling::Geographic)).unwrap();
+    let read = decode(&encode(&tile, Tiling::Geographic).unwrap()).unwrap();
     assert_eq!(read.extensions, [1]);
     for (normal, bytes) in tile.normals.iter().zip(read.normals) {
         // As in the paper, and in CesiumJS.
@@ -180,7 +189,7 @@ fn normals_come_back_up_to_a_step_of_their_bytes() {
         let cos: f64 = (0..3).map(|k| normal[k] * back[k]).sum();
         assert!(cos > 0.9998, "{normal:?} {back:?}");
     }
-    let mut bytes = encode(&tile, Tiling::Geographic);
+    let mut bytes = encode(&tile, Tiling::Geographic).unwrap();
     let at = bytes.len() - 1000 - 4;
     bytes[at..at + 4].copy_from_slice(&998_u32.to_le_bytes());
     bytes.truncate(at + 4 + 998);

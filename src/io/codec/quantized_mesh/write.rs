@@ -3,13 +3,18 @@
 use super::header::Header;
 use super::{NORMALS, SHORT};
 use crate::data::{TerrainTile, Tiling};
+use crate::error::Result;
 
 /// Returns the bytes of a tile, which are not compressed.
 ///
 /// The normals are left out unless there is one for each vertex. Vertices are in the order of their
 /// first use by a triangle, as [`TerrainTile`]s of a pyramid have them; others are put into this
 /// order.
-pub fn encode(tile: &TerrainTile, tiling: Tiling) -> Vec<u8> {
+///
+/// # Errors
+/// If a triangle names a vertex that does not exist.
+pub fn encode(tile: &TerrainTile, tiling: Tiling) -> Result<Vec<u8>> {
+    tile.check()?;
     let (order, triangles) = by_first_use(tile);
     let vertices: Vec<[u16; 3]> = order.iter().map(|&v| tile.vertices[v as usize]).collect();
     let mut bytes = Vec::new();
@@ -52,7 +57,7 @@ pub fn encode(tile: &TerrainTile, tiling: Tiling) -> Vec<u8> {
         bytes.extend((2 * count).to_le_bytes());
         bytes.extend(normals.flatten());
     }
-    bytes
+    Ok(bytes)
 }
 
 /// A direction in two bytes: projected to an octahedron, whose lower half is folded outwards

@@ -20,8 +20,9 @@ struct Shape {
 /// along its borders.
 ///
 /// # Errors
-/// If the file would be too large.
+/// If a triangle names a vertex that does not exist, or the file would be too large.
 pub fn content(tile: &TerrainTile, tiling: Tiling, depth: f64) -> Result<Vec<u8>> {
+    tile.check()?;
     let shape = Shape::of(tile, tiling, depth);
     let mut bounds = Bounds::default();
     shape.positions.iter().for_each(|&p| bounds.add(p));

@@ -20,11 +20,14 @@ impl TilesetRoot {
     /// Returns where a tile is below the root: the root is 0, 0, 0. `None` if it is not below it.
     pub fn relative(&self, at: TilePosition) -> Option<TilePosition> {
         let depth = at.level.checked_sub(self.at.level)?;
+        if depth > Tiling::MAX_LEVEL {
+            return None;
+        }
         let is_below = [at.column >> depth, at.row >> depth] == [self.at.column, self.at.row];
         is_below.then(|| TilePosition {
             level: depth,
-            column: at.column - (self.at.column << depth),
-            row: at.row - (self.at.row << depth),
+            column: at.column & ((1 << depth) - 1),
+            row: at.row & ((1 << depth) - 1),
         })
     }
 
@@ -89,7 +92,7 @@ pub fn tileset_json(roots: &[TilesetRoot], finest: u8) -> String {
             "implicitTiling": {
                 "subdivisionScheme": "QUADTREE",
                 "subtreeLevels": SUBTREE_LEVELS,
-                "availableLevels": u32::from(finest - root.at.level) + 1,
+                "availableLevels": u32::from(finest.saturating_sub(root.at.level)) + 1,
                 "subtrees": { "uri": format!("{folder}subtrees/{{level}}/{{x}}/{{y}}.subtree") },
             },
         })
