@@ -18,9 +18,9 @@ type Level = (u8, [f64; 2], [u64; 6]);
 
 /// The options: format, tiling, bound, finest level, height around the surface, what is added to
 /// heights, and true if tiles are not compressed.
-type Options<'py> = (
-    &'py str,
-    &'py str,
+type Options = (
+    String,
+    String,
     Option<f64>,
     Option<u8>,
     Option<f64>,
@@ -33,7 +33,7 @@ type Options<'py> = (
 pub(crate) fn terrain_tiles(
     py: Python<'_>,
     surface: PyRef<'_, Surface>,
-    options: Options<'_>,
+    options: Options,
     folder: (PathBuf, bool),
     call: Call,
 ) -> PyResult<Vec<Level>> {
@@ -41,7 +41,7 @@ pub(crate) fn terrain_tiles(
     let options = TerrainTilesOptions {
         format: requests::choose(
             "format",
-            format,
+            &format,
             &[
                 ("quantized-mesh", TerrainFormat::QuantizedMesh),
                 ("3dtiles", TerrainFormat::Tiles3d),
@@ -50,7 +50,7 @@ pub(crate) fn terrain_tiles(
         rule: PyramidRule {
             tiling: requests::choose(
                 "tiling",
-                tiling,
+                &tiling,
                 &[
                     ("geographic", Tiling::Geographic),
                     ("mercator", Tiling::WebMercator),

@@ -29,6 +29,7 @@ use self::heights::Heights;
 use self::lines::TileLines;
 use self::plan::{area, tiles_of, to_earth};
 pub use self::rule::{Level, PyramidRule};
+use self::tile::Outside;
 pub use self::tile::TileReport;
 use crate::data::{AT_ONCE, Bounds, Surface, TerrainTile, Tiling, corners};
 use crate::error::{Error, Result};
@@ -174,7 +175,7 @@ impl Pyramid {
                 take(level, tile, &report)?;
                 Ok((report, outside))
             });
-            let tiles: Vec<(TileReport, Vec<([u32; 2], f64)>)> = tiles.collect::<Result<_>>()?;
+            let tiles: Vec<(TileReport, Outside)> = tiles.collect::<Result<_>>()?;
             let mut sums = TileReport::default();
             tiles.iter().for_each(|(report, _)| sums.merge(report));
             end(level, &sums)?;

@@ -61,7 +61,7 @@ struct Frame {
 
 /// Heights outside of the surface, in corners of the grids of the tiles below: by the numbers of
 /// the lines that cross there.
-type Outside = Vec<([u32; 2], f64)>;
+pub(super) type Outside = Vec<([u32; 2], f64)>;
 
 /// Makes one tile, and what the tiles below it have to know of it.
 pub(super) fn tile(

@@ -77,9 +77,9 @@ impl<'a> Rest<'a> {
     fn numbers(&mut self, count: usize, is_long: bool, what: &str) -> Result<Vec<u32>> {
         let unit = if is_long { 4 } else { 2 };
         let bytes = self.take(count.saturating_mul(unit), what)?;
-        let number = |bytes: &[u8]| match bytes {
-            &[a, b] => u32::from(u16::from_le_bytes([a, b])),
-            &[a, b, c, d] => u32::from_le_bytes([a, b, c, d]),
+        let number = |bytes: &[u8]| match *bytes {
+            [a, b] => u32::from(u16::from_le_bytes([a, b])),
+            [a, b, c, d] => u32::from_le_bytes([a, b, c, d]),
             _ => 0,
         };
         Ok(bytes.chunks_exact(unit).map(number).collect())
