@@ -43,11 +43,9 @@ fn found(grid: NeededGrid) -> OperationGrid {
 /// Returns true if PROJ can read a file, or that is not known: it describes only grids of shifts
 /// and of heights, and GeoTIFF may be a grid of another kind.
 fn is_readable(file: &str) -> bool {
-    let is_described = match file.rsplit('.').next().unwrap_or_default() {
-        "gtx" | "gsb" => true,
-        "tif" => cfg!(not(feature = "proj-tiff")),
-        _ => false,
-    };
+    let extension = file.rsplit('.').next().unwrap_or_default();
+    let is_described = matches!(extension, "gtx" | "gsb")
+        || cfg!(not(feature = "proj-tiff")) && extension == "tif";
     !is_described || can_read(file)
 }
 

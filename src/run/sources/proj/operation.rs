@@ -253,7 +253,7 @@ impl Operation {
         }
         let (from, to) = (&self.from, &self.to);
         let mut found = Vec::new();
-        if accuracy < 0.0 || accuracy > REPORTED {
+        if !(0.0..=REPORTED).contains(&accuracy) {
             let mut warning = if accuracy < 0.0 {
                 format!("the accuracy of the operation from {from} to {to} is unknown ({name})")
             } else {
