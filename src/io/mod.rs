@@ -58,8 +58,8 @@ pub(crate) use bytes::output::{OutputFolder, Temporary};
 pub use bytes::watch::Watch;
 pub(crate) use codec::prj;
 pub use codec::{
-    ascii_grid, flatgeobuf, gdal, geojson, geotiff, gpkg, las, png, quantized_mesh, ramp, shapefile,
-    tetgen, text, tiles_3d, triangle,
+    ascii_grid, flatgeobuf, gdal, geojson, geotiff, gpkg, las, png, quantized_mesh, ramp,
+    shapefile, tetgen, text, tiles_3d, triangle,
 };
 pub use fronts::{contours, layer, mesh, points, profiles, raster};
 pub use options::cut::OnDamage;

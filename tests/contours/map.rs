@@ -193,7 +193,7 @@ fn each_case(seed: u64, mut check: impl FnMut(&Case, &mut Random)) {
         };
         check(&case, &mut random);
         if asked().is_some() && round % 500 == 499 {
-            println!("{} surfaces from seed {seed} on passed", round + 1);
+            eprintln!("{} surfaces from seed {seed} on passed", round + 1);
         }
     }
 }

@@ -37,7 +37,7 @@ fn check(name: &str, surface: &dyn Surface, interval: f64) {
         let meets = |other| boxes_meet(label, other);
         assert!(!labels[..i].iter().any(meets), "{name}: labels overlap");
     }
-    println!(
+    eprintln!(
         "{name}: {} of {} lines, {} segments, none meet; {most} off at most; {} bands; {} labels",
         lines.len(),
         found.traced,

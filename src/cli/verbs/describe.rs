@@ -228,6 +228,7 @@ mod tests {
                 "accuracy",
                 "check",
                 "run",
+                "crs",
                 "job",
                 "demo",
                 "describe",

@@ -17,7 +17,7 @@ use crate::io::tiles_3d::{self, TilesetRoot};
 use crate::run::context::notice::Notice;
 use crate::run::context::units::Units;
 use crate::run::context::{Context, Journal, Size, Stage};
-use crate::run::sources::proj;
+use crate::run::sources::proj::{self, TransformOptions};
 use crate::terrain::{Level, Pyramid, PyramidRule, TileReport};
 
 /// The file by which a viewer finds quantized meshes, and that by which it finds 3D Tiles.
@@ -327,7 +327,11 @@ impl Placing {
                     Box::new(plan.clone()),
                     Box::new(system.clone()),
                 ));
-                Some(proj::transform(&plan, &system)?)
+                Some(proj::transform(
+                    &plan,
+                    &system,
+                    &TransformOptions::default(),
+                )?)
             }
         };
         Ok(Placing {
