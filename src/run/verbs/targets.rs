@@ -402,7 +402,16 @@ fn free_in(_folder: &Path) -> Option<u64> {
 /// Returns a path that is the same for all names of one file.
 pub(crate) fn identity(path: &Path) -> PathBuf {
     let file = file_of(path).unwrap_or(path);
-    file.canonicalize().unwrap_or_else(|_| file.to_path_buf())
+    let missing = || {
+        let followed = io::followed(file);
+        let folder = folder_of(&followed).canonicalize();
+        match folder.ok().zip(followed.file_name()) {
+            // A link to a file that is not there yet.
+            Some((folder, name)) if followed != file => folder.join(name),
+            _ => file.to_path_buf(),
+        }
+    };
+    file.canonicalize().unwrap_or_else(|_| missing())
 }
 
 /// Returns the path of an existing file, without the layer and the field that may follow its name.

@@ -167,6 +167,15 @@ pub fn probe(target: &Path) -> Result<()> {
     probe().map_err(|e: Error| e.in_file(target))
 }
 
+/// Returns the path of the file that is written for a target: symbolic links are followed, also if
+/// there is no file yet where they lead.
+pub(crate) fn followed(target: &Path) -> std::path::PathBuf {
+    match TargetKind::of(target) {
+        Ok(TargetKind::File(path)) => path,
+        _ => target.to_path_buf(),
+    }
+}
+
 /// Returns true if a target is a pipe or a device, which is never replaced.
 pub fn is_stream(target: &Path) -> bool {
     matches!(TargetKind::of(target), Ok(TargetKind::Stream))

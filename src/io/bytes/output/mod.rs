@@ -6,6 +6,7 @@ mod set;
 mod target;
 mod temporary;
 
+pub(crate) use file::followed;
 pub use file::{Output, is_standard_output, is_stream, probe, remove_abandoned, require_absent};
 pub(crate) use folder::OutputFolder;
 pub use set::{Destination, OutputSet};
