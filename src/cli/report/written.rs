@@ -26,14 +26,14 @@ use crate::terrain::Quantity;
 #[derive(Debug)]
 pub(crate) struct Shown<'a> {
     console: &'a Console,
-    /// What the user types to go on with a job.
-    how_to_go_on: String,
+    /// What the user types to go on with a job; `None` if its folder is removed at the end.
+    how_to_go_on: Option<String>,
     /// Prints how to go on if a signal ends the program.
     words: Mutex<Option<LastWords>>,
 }
 
 impl<'a> Shown<'a> {
-    pub(crate) fn new(console: &'a Console, how_to_go_on: String) -> Self {
+    pub(crate) fn new(console: &'a Console, how_to_go_on: Option<String>) -> Self {
         Shown {
             console,
             how_to_go_on,
@@ -49,12 +49,14 @@ impl<'a> Shown<'a> {
         }
     }
 
-    fn kept(&self, folder: &Path) -> String {
-        format!(
-            "finished tasks are kept in {}: go on with {}",
+    /// Returns what is said of finished tasks, with what is to be done before; nothing if they are
+    /// not kept.
+    fn kept(&self, folder: &Path, first: &str) -> Option<String> {
+        let command = self.how_to_go_on.as_ref()?;
+        Some(format!(
+            "finished tasks are kept in {}: {first}go on with {command}",
             folder.display(),
-            self.how_to_go_on
-        )
+        ))
     }
 
     fn set_words(&self, words: impl FnOnce() -> Option<LastWords>) {
@@ -124,10 +126,10 @@ impl<'a> Shown<'a> {
         match surface {
             WrittenOf::Tiles { report, folder } if report.skipped > 0 => {
                 let skipped = counted(report.skipped as u64, "file");
+                let kept = self.kept(folder, "repair what can be repaired, then ");
+                let kept = kept.map(|kept| format!("; {kept}")).unwrap_or_default();
                 console.note(format_args!(
-                    "the result has holes: {skipped} skipped; finished tasks are kept in {}: repair what can be repaired, then go on with {}",
-                    folder.display(),
-                    self.how_to_go_on,
+                    "the result has holes: {skipped} skipped{kept}"
                 ));
                 Exit::Holes
             }
@@ -156,7 +158,7 @@ impl Monitor for Shown<'_> {
                 console.line(format_args!("resumed     {done} of {tasks} tasks are done"));
             }
             Event::TasksBegin(folder) => {
-                self.set_words(|| console.note_if_ended(self.kept(folder)))
+                self.set_words(|| console.note_if_ended(self.kept(folder, "")?))
             }
             Event::Waits { tasks, on } => console.note(format_args!(
                 "waits for {} of other processes{}",

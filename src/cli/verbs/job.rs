@@ -102,7 +102,7 @@ fn plan(job: &Path, look: Look, words: &[String], console: &Console) -> Result<E
         look,
         ..write::options(&tiles)
     };
-    let shown = Shown::new(console, on_job("run", job));
+    let shown = Shown::new(console, Some(on_job("run", job)));
     let command = JobCommand {
         words: words.to_vec(),
         ..JobCommand::new(&request, &targets, &tiles)?
@@ -124,7 +124,7 @@ fn on_job(action: &str, job: &Path) -> String {
 /// Does tasks together with other processes.
 fn work(job: &Path, options: &WorkOptions, console: &Console) -> Result<Exit> {
     let stored = StoredJob::read(job)?;
-    let shown = Shown::new(console, on_job("work", stored.folder()));
+    let shown = Shown::new(console, Some(on_job("work", stored.folder())));
     let report = run::work_job(&stored, options, &shown.context())?;
     Ok(shown.print(&report))
 }
@@ -132,7 +132,7 @@ fn work(job: &Path, options: &WorkOptions, console: &Console) -> Result<Exit> {
 /// Does again what changed inputs reach.
 fn update(job: &Path, console: &Console) -> Result<Exit> {
     let stored = StoredJob::read(job)?;
-    let shown = Shown::new(console, on_job("run", stored.folder()));
+    let shown = Shown::new(console, Some(on_job("run", stored.folder())));
     let report = run::update_job(&stored, &shown.context())?;
     Ok(shown.print(&report))
 }
@@ -140,7 +140,7 @@ fn update(job: &Path, console: &Console) -> Result<Exit> {
 /// Does one task, or all that are left.
 fn run_tasks(job: &Path, task: Option<usize>, console: &Console) -> Result<Exit> {
     let stored = StoredJob::read(job)?;
-    let shown = Shown::new(console, on_job("run", stored.folder()));
+    let shown = Shown::new(console, Some(on_job("run", stored.folder())));
     let context = shown.context();
     let Some(task) = task else {
         return run::run_job(&stored, &context).map(|report| shown.print(&report));

@@ -49,7 +49,7 @@ pub(crate) fn run(args: &RunArgs, console: &Console) -> Result<Exit> {
         })?;
         return Ok(Exit::Done);
     }
-    let shown = Shown::new(console, String::new());
+    let shown = Shown::new(console, None);
     let done = planned.make(&shown.context(), console)?;
     done.files.iter().for_each(|path| print_file(path, console));
     match args.json {

@@ -42,7 +42,7 @@ pub(crate) fn run(verb: &Verb, console: &Console) -> Result<Exit> {
         tiles,
     } = asked(verb, console)?;
     let again = if tiles.update { "--update" } else { "--resume" };
-    let shown = Shown::new(console, again.to_owned());
+    let shown = Shown::new(console, Some(again.to_owned()));
     let report = run::write(&request, &targets, &execution(&tiles), &shown.context())?;
     Ok(shown.print(&report))
 }
