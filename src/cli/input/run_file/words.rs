@@ -334,13 +334,20 @@ fn of_entry(arg: &Arg, entry: &Entry, file: &RunFile) -> Result<Vec<OsString>> {
         Value::List(list) => {
             let values = list.iter().map(|(_, value)| one(value));
             let values: Vec<String> = values.collect::<Result<_>>()?;
-            Ok(match arg.get_action() {
-                ArgAction::Append => values.into_iter().map(typed).collect(),
-                _ => vec![typed(values.join(","))],
-            })
+            match arg.get_action() {
+                ArgAction::Append => Ok(values.into_iter().map(typed).collect()),
+                _ if values.len() == 1 || takes_list(arg) => Ok(vec![typed(values.join(","))]),
+                _ => Err(expected("one value")),
+            }
         }
         _ => Err(expected("a text, a number or a list of them")),
     }
+}
+
+/// Returns true if the value of an option is a list with commas.
+fn takes_list(arg: &Arg) -> bool {
+    let names = arg.get_value_names().unwrap_or_default();
+    names.iter().any(|name| name.contains(','))
 }
 
 /// Returns a value; a path relative to the run file with its folder.
