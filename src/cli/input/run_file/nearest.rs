@@ -11,19 +11,25 @@ pub(super) fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> O
         .map(|(_, known)| known)
 }
 
-/// Returns how many letters have to be inserted, removed or replaced (Levenshtein's distance).
+/// Returns how many letters have to be inserted, removed, replaced or swapped with the next
+/// (Levenshtein's distance with swaps, each letter moved once).
 fn distance(from: &str, to: &str) -> usize {
-    let to: Vec<char> = to.chars().collect();
-    let mut row: Vec<usize> = (0..=to.len()).collect();
-    for (i, letter) in from.chars().enumerate() {
-        let mut before = std::mem::replace(&mut row[0], i + 1);
+    let [from, to] = [from, to].map(|text| text.chars().collect::<Vec<char>>());
+    let mut rows: Vec<Vec<usize>> = vec![(0..=to.len()).collect()];
+    for (i, letter) in from.iter().enumerate() {
+        let mut row = vec![i + 1];
         for (j, other) in to.iter().enumerate() {
-            let replaced = before + usize::from(letter != *other);
-            before = row[j + 1];
-            row[j + 1] = replaced.min(before + 1).min(row[j] + 1);
+            let replaced = rows[i][j] + usize::from(letter != other);
+            let least = replaced.min(rows[i][j + 1] + 1).min(row[j] + 1);
+            let is_swapped = i > 0 && j > 0 && from[i - 1] == *other && to[j - 1] == *letter;
+            row.push(match is_swapped {
+                true => least.min(rows[i - 1][j - 1] + 1),
+                false => least,
+            });
         }
+        rows.push(row);
     }
-    row[to.len()]
+    rows[from.len()][to.len()]
 }
 
 #[cfg(test)]
@@ -37,7 +43,13 @@ mod tests {
         assert_eq!(nearest("align_too", known()), Some("align-to"));
         assert_eq!(nearest("tee", known()), Some("te"));
         assert_eq!(nearest("interval", known()), None);
-        for (from, to, expected) in [("", "", 0), ("", "ab", 2), ("kitten", "sitting", 3)] {
+        assert_eq!(nearest("dme", ["drape", "dem"].into_iter()), Some("dem"));
+        for (from, to, expected) in [
+            ("", "", 0),
+            ("", "ab", 2),
+            ("kitten", "sitting", 3),
+            ("dme", "dem", 1),
+        ] {
             assert_eq!(distance(from, to), expected);
             assert_eq!(distance(to, from), expected);
         }

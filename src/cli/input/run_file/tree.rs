@@ -46,7 +46,13 @@ impl Value {
 pub(super) fn of_toml(text: &str) -> Result<Vec<Entry>> {
     let line_at = |start: usize| 1 + ends_of_lines(text.as_bytes(), start.min(text.len()));
     let table = DeTable::parse(text).map_err(|e| {
-        let error = Error::format(e.message().trim().replace('\n', ": "));
+        let message = e.message().trim().replace('\n', ": ");
+        let found = e.span().and_then(|span| text.get(span)).unwrap_or_default();
+        let error = Error::format(match message.as_str() {
+            // Which one, it does not say.
+            "duplicate key" if !found.is_empty() => format!("`{found}` is there twice"),
+            _ => message,
+        });
         match e.span() {
             Some(span) => error.at(format!("line {}", line_at(span.start))),
             None => error,
@@ -78,7 +84,9 @@ fn of_value(value: &DeValue, line_at: &dyn Fn(usize) -> usize) -> Value {
                 (number.radix() != 10).then(|| i128::from_str_radix(digits, number.radix()));
             Value::Word(match other {
                 Some(Ok(value)) => value.to_string(),
-                _ => digits.to_owned(),
+                // Too large: options refuse it as it is typed.
+                Some(Err(_)) => format!("{}{digits}", prefix(number.radix())),
+                None => digits.to_owned(),
             })
         }
         DeValue::Datetime(_) => Value::Date,
@@ -91,6 +99,15 @@ fn of_value(value: &DeValue, line_at: &dyn Fn(usize) -> usize) -> Value {
                 .collect(),
         ),
         DeValue::Table(table) => Value::Table(entries(table, line_at)),
+    }
+}
+
+/// Returns what numbers of a base begin with.
+fn prefix(radix: u32) -> &'static str {
+    match radix {
+        2 => "0b",
+        8 => "0o",
+        _ => "0x",
     }
 }
 
