@@ -37,6 +37,11 @@ pub(crate) fn man(args: &ManArgs, console: &Console) -> Result<Exit> {
             _ => Ok(Exit::Done),
         };
     };
+    if folder.exists() && !folder.is_dir() {
+        return Err(Error::usage("this is a file, and not a folder")
+            .in_file(folder)
+            .cure("name a folder for the pages"));
+    }
     std::fs::create_dir_all(folder).map_err(|e| Error::from(e).in_file(folder))?;
     let mut pages = vec![page_of(&program)];
     add_pages(&program, &mut pages);

@@ -1,6 +1,6 @@
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, ValueHint};
 
 use super::MemoryArgs;
 
@@ -39,7 +39,7 @@ Example:
 )]
 pub(crate) struct RunArgs {
     /// The run file
-    #[arg(value_name = "FILE.toml")]
+    #[arg(value_name = "FILE.toml", value_hint = ValueHint::FilePath)]
     pub(crate) input: PathBuf,
 
     /// Print what would be made, with the single commands, and write nothing
