@@ -154,6 +154,8 @@ pub use products::tin::{BuildReport, ReplacedPoints, TinRequest};
 pub use products::volume::{
     Bulking, Earthwork, VolumeBase, VolumeOptions, VolumeProduct, VolumeRow, VolumeUnit, volume,
 };
+#[cfg(feature = "cli")]
+pub(crate) use request::input::is_read_once;
 pub use request::input::{Input, MemoryPoints, STDIN};
 pub use request::lines::{
     FlatOptions, FlatRule, LineRequest, LineRole, LowerEdge, PerRecord, WallOptions,

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use serde_json::{Value, json};
 
+use super::commands::quoted;
 use super::summary::counted;
 use crate::run::SurfaceEstimate;
 use crate::run::units::bytes;
@@ -13,6 +14,10 @@ use crate::run::units::bytes;
 pub(crate) struct RunPlan {
     pub(crate) surfaces: Vec<PlannedSurface>,
     pub(crate) products: Vec<PlannedFiles>,
+    /// The list that single commands read, if one of them reads several files as one surface.
+    pub(crate) list: String,
+    /// What that list has; empty if it is not needed.
+    pub(crate) listed: Vec<PathBuf>,
 }
 
 /// A surface that would be built or read.
@@ -58,6 +63,10 @@ pub(crate) fn json(plan: &RunPlan) -> Value {
     json!({
         "surfaces": plan.surfaces.iter().map(surface).collect::<Vec<_>>(),
         "products": plan.products.iter().map(product).collect::<Vec<_>>(),
+        "lists": match plan.listed.is_empty() {
+            true => json!({}),
+            false => json!({ &plan.list: texts(&plan.listed) }),
+        },
     })
 }
 
@@ -111,6 +120,13 @@ pub(crate) fn text(plan: &RunPlan) -> String {
         }
     }
     text += "\nThe same by single commands:\n";
+    if !plan.listed.is_empty() {
+        let files: Vec<String> = texts(&plan.listed)
+            .iter()
+            .map(|file| quoted(file))
+            .collect();
+        text += &format!("  printf '%s\\n' {} > {}\n", files.join(" "), plan.list);
+    }
     for product in &plan.products {
         text += &format!("  {}\n", product.command);
     }

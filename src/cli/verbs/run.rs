@@ -1,7 +1,6 @@
 //! Several products of one surface, by a run file.
 
-use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{FromArgMatches, Parser};
 use serde_json::{Value, json};
@@ -17,7 +16,7 @@ use super::volume::Volume;
 use super::write;
 use crate::cli::input::args::{Cli, RunArgs, SurfaceArgs, Verb};
 use crate::cli::input::plan::SurfacePlan;
-use crate::cli::input::run_file::{ProductWords, RunFile, Vocabulary, refusal};
+use crate::cli::input::run_file::{LIST, ProductWords, RunFile, Vocabulary, refusal};
 use crate::cli::report::commands::command_line;
 use crate::cli::report::console::{Console, Verbosity};
 use crate::cli::report::run_plan::{self, PlannedFiles, PlannedSurface, RunPlan, texts};
@@ -26,8 +25,9 @@ use crate::cli::report::summary::print_surface;
 use crate::cli::report::written::{Shown, note_meshes, print_file, print_summary, summary_json};
 use crate::cli::{Exit, RunOptions, RunTables};
 use crate::error::{Error, Result};
-use crate::io::OutputSet;
-use crate::run::targets::{ProductFiles, require_apart};
+use crate::io::{OutputSet, is_standard_output};
+use crate::run::is_read_once;
+use crate::run::targets::{ProductFiles, is_same, require_apart};
 use crate::run::{Context, Origin, SharedProduct, SharedSurfaces, SurfaceProduct, SurfaceReport};
 use crate::terrain::Method;
 
@@ -54,7 +54,7 @@ pub(crate) fn run(args: &RunArgs, console: &Console) -> Result<Exit> {
     done.files.iter().for_each(|path| print_file(path, console));
     match args.json {
         true => print(&in_lines(&done.json(&planned)))?,
-        false => done.print_answers()?,
+        false => done.print_answers(&planned)?,
     }
     let is_failure =
         |outcome: &Outcome| matches!(outcome, Outcome::Answer(answer) if answer.is_failure);
@@ -87,6 +87,10 @@ pub(crate) fn report_of(
     let done = planned.make(context, &console)?;
     Ok(done.json(&planned))
 }
+
+/// What to do if a product needs what another one makes.
+const OF_ANOTHER: &str = "another product makes it: products do not read what others of their run \
+    make; use a second run file";
 
 /// The options of a run file, as the command line has them.
 struct Parsed {
@@ -123,14 +127,35 @@ impl Parsed {
                 .collect::<Result<_>>()?,
         })
     }
+
+    fn any_has_two_surfaces(&self) -> bool {
+        self.products.iter().any(|(words, _)| words.is_of_several)
+    }
+
+    /// Returns an error with the cure for a file that another product makes.
+    fn of_other_outputs(&self, error: Error, words: &ProductWords) -> Error {
+        let is_output_of = |of: &ProductWords, path: &Path| {
+            let outputs = of.words.iter().filter_map(|word| word.to_str());
+            let mut outputs = outputs.filter_map(|word| word.strip_prefix("--output="));
+            outputs.any(|output| is_same(Path::new(output), path))
+        };
+        let is_of_another = |path: &Path| {
+            let mut others = self.products.iter().map(|(other, _)| other);
+            !is_output_of(words, path) && others.any(|other| is_output_of(other, path))
+        };
+        match error.path().is_some_and(is_of_another) {
+            true => error.cure(OF_ANOTHER),
+            false => error,
+        }
+    }
 }
 
 /// Products whose options and outputs are checked, and their surfaces.
 struct Planned<'a> {
     list: Vec<PlannedProduct<'a>>,
     surfaces: SharedSurfaces,
-    /// How many names the inputs of the surface have.
-    inputs: usize,
+    /// The files of the surface, if one word stands for several.
+    listed: Vec<PathBuf>,
 }
 
 struct PlannedProduct<'a> {
@@ -147,13 +172,18 @@ impl<'a> Planned<'a> {
         options: &RunOptions,
         console: &Console,
     ) -> Result<Self> {
-        let shared = SurfacePlan::resolve(&parsed.surface, console)
-            .map_err(|e| file.located(e, "[input]"))?;
+        let resolved = SurfacePlan::resolve(&parsed.surface, console);
+        let shared = match resolved {
+            Ok(plan) => Some(plan),
+            // Verbs of two surfaces may have the options for the other one: they find out.
+            Err(_) if parsed.surface.inputs.len() == 1 && parsed.any_has_two_surfaces() => None,
+            Err(e) => return Err(file.of_surface(e, &Vocabulary::surface_locations(file))),
+        };
         let mut surfaces = SharedSurfaces::new(options.memory);
         let mut list = Vec::new();
         for (words, verb) in &parsed.products {
-            let product =
-                product_of(verb, &shared, console).map_err(|e| file.located(e, &words.location))?;
+            let product = product_of(verb, shared.as_ref(), console)
+                .map_err(|e| file.of_product(parsed.of_other_outputs(e, words), words))?;
             let of_product = product.surfaces().iter();
             let add = |plan: &SurfacePlan| {
                 surfaces.add(&plan.request, product.method(), product.needs_whole())
@@ -165,6 +195,7 @@ impl<'a> Planned<'a> {
                 product,
             });
         }
+        require_one_reader(&list, &surfaces).map_err(|(words, e)| file.of_product(e, words))?;
         let files = list
             .iter()
             .map(|PlannedProduct { product, .. }| ProductFiles {
@@ -178,17 +209,18 @@ impl<'a> Planned<'a> {
             reads: file.name().map(PathBuf::from).into_iter().collect(),
         });
         require_apart(&files).map_err(|(number, e)| match list.get(number) {
-            Some(of) => e.within(format_args!(
-                "product {} ({})",
-                number + 1,
-                of.words.location
-            )),
+            Some(of) => file.of_product(e, of.words),
             None => e,
         })?;
+        let has_list = |of: &PlannedProduct| of.words.words.iter().any(|word| word == LIST);
+        let listed = match list.iter().any(has_list) {
+            true => parsed.surface.inputs.clone(),
+            false => Vec::new(),
+        };
         Ok(Planned {
             list,
             surfaces,
-            inputs: parsed.surface.inputs.len(),
+            listed,
         })
     }
 
@@ -254,26 +286,15 @@ impl<'a> Planned<'a> {
             surfaces: of.surfaces.clone(),
             reads: of.product.reads(),
             writes: of.product.writes(),
-            command: command_line(&self.single(of)),
+            command: command_line(&of.words.words),
         };
         let surfaces = (0..self.surfaces.len()).map(surface);
         Ok(RunPlan {
             surfaces: surfaces.collect::<Result<_>>()?,
             products: self.list.iter().map(product).collect(),
+            list: LIST.trim_start_matches('@').to_owned(),
+            listed: self.listed.clone(),
         })
-    }
-
-    /// Returns the words of the single command. A list stands for several files that are one of the
-    /// surfaces of a verb.
-    fn single(&self, of: &PlannedProduct) -> Vec<OsString> {
-        let mut words = of.words.words.clone();
-        if of.words.is_of_several
-            && self.inputs > 1
-            && let Some(word) = words.get_mut(1)
-        {
-            *word = "@files.txt".into();
-        }
-        words
     }
 }
 
@@ -321,26 +342,83 @@ impl Done {
     }
 
     /// Prints what was asked for besides files.
-    fn print_answers(&self) -> Result<()> {
-        let texts = self.outcomes.iter().filter_map(|outcome| match outcome {
-            Outcome::Answer(answer) if !answer.text.is_empty() => Some(answer.text.as_str()),
+    fn print_answers(&self, planned: &Planned) -> Result<()> {
+        let of_products = planned.list.iter().zip(&self.outcomes);
+        let texts = of_products.filter_map(|(of, outcome)| match outcome {
+            Outcome::Answer(answer) if !answer.text.is_empty() => Some(format!(
+                "product {}: {}\n{}",
+                of.words.number, of.words.verb, answer.text
+            )),
             _ => None,
         });
-        let texts: Vec<&str> = texts.collect();
+        let texts: Vec<String> = texts.collect();
         print(&texts.join("\n"))
     }
 }
 
-/// Returns what a verb makes, of a surface whose plan is known.
+/// Makes sure that what can be read only once, such as the standard input, is read once, and that
+/// the standard output has nothing but answers. Returns an error with the product that it is about.
+fn require_one_reader<'a>(
+    list: &[PlannedProduct<'a>],
+    surfaces: &SharedSurfaces,
+) -> std::result::Result<(), (&'a ProductWords, Error)> {
+    // The file, and the surface that is built of it; a product that reads it itself has none.
+    let mut read: Vec<(PathBuf, Option<usize>)> = Vec::new();
+    for PlannedProduct {
+        words,
+        product,
+        surfaces: numbers,
+    } in list
+    {
+        let of_surface = |&number: &usize| {
+            let files = surfaces.files(number).into_iter();
+            files.map(move |file| (file, Some(number)))
+        };
+        let mut own: Vec<(PathBuf, Option<usize>)> = numbers.iter().flat_map(of_surface).collect();
+        let others = product.reads().into_iter().map(|file| (file, None));
+        let others: Vec<_> = others
+            .filter(|(file, _)| own.iter().all(|(known, _)| known != file))
+            .collect();
+        own.extend(others);
+        own.retain(|(file, _)| is_read_once(file));
+        for (i, (file, of)) in own.iter().enumerate() {
+            let is_again = read
+                .iter()
+                .any(|(known, known_of)| known == file && (of.is_none() || known_of != of))
+                || own[..i].iter().any(|(known, _)| known == file);
+            if is_again {
+                let error = Error::usage(format!(
+                    "`{}` is named twice, and can be read once",
+                    file.display()
+                ));
+                return Err((*words, error.cure("name a file for one of them")));
+            }
+        }
+        read.extend(own);
+        if let Some(path) = product
+            .writes()
+            .iter()
+            .find(|path| is_standard_output(path))
+        {
+            let error = Error::usage("the output of a run file is not the standard output")
+                .in_file(path)
+                .cure("name a file: those of all products appear at the end, or none");
+            return Err((*words, error));
+        }
+    }
+    Ok(())
+}
+
+/// Returns what a verb makes; `shared` is the plan of its surface if it is known.
 fn product_of<'a>(
     verb: &'a Verb,
-    shared: &SurfacePlan,
+    shared: Option<&SurfacePlan>,
     console: &Console,
 ) -> Result<Box<dyn Product + 'a>> {
     Ok(match verb {
-        Verb::Volume(args) => Box::new(Volume::of(args, Some(shared), console)?),
-        Verb::Compare(args) => Box::new(Comparison::of(args, Some(shared), console)?),
-        Verb::Profile(args) => Box::new(ProfileAsked::of(args, Some(shared), console)?),
+        Verb::Volume(args) => Box::new(Volume::of(args, shared, console)?),
+        Verb::Compare(args) => Box::new(Comparison::of(args, shared, console)?),
+        Verb::Profile(args) => Box::new(ProfileAsked::of(args, shared, console)?),
         Verb::Drape(args) => Box::new(Drape::of(args, console)?),
         Verb::Accuracy(args) => Box::new(Accuracy::of(args, console)?),
         Verb::Sample(args) if args.output.is_none() => {

@@ -461,6 +461,11 @@ fn extension_of(name: &str) -> String {
     }
 }
 
+/// What to do if a product reads what another one would write.
+#[cfg(feature = "cli")]
+const OF_ANOTHER: &str = "give it another name: products do not read what others of their run make; \
+    that takes a second run";
+
 /// The files of one of several products.
 #[cfg(feature = "cli")]
 #[derive(Debug, Default)]
@@ -501,7 +506,7 @@ pub(crate) fn require_apart(products: &[ProductFiles]) -> std::result::Result<()
             .writes
             .iter()
             .try_for_each(refused)
-            .map_err(|error| (number, error))?;
+            .map_err(|error| (number, error.cure(OF_ANOTHER)))?;
     }
     Ok(())
 }

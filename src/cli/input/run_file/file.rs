@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::nearest::nearest;
 use super::tree::{self, Entry, Value, ends_of_lines};
+use super::words::ProductWords;
 use crate::error::{Error, Result};
 
 /// A run file: what it says, not yet what that means.
@@ -95,6 +96,7 @@ impl RunFile {
                 _ => {
                     let error = Error::usage(format!("`{key}` is not part of a run file"));
                     let cure = match nearest(&key, ["input", "product"].into_iter()) {
+                        Some("product") => "did you mean [[product]]?".to_owned(),
                         Some(known) => format!("did you mean [{known}]?"),
                         None => "options are in [input], for the surface, or in a [[product]]"
                             .to_owned(),
@@ -104,12 +106,16 @@ impl RunFile {
             }
         }
         if !has_input {
-            return Err(Error::usage("there is no [input]")
-                .cure("name the files of the surface: [input] files = [\"tile.laz\"]"));
+            return Err(Error::usage("there is no [input]").cure(
+                "begin with a line [input], and name the files of the surface in the next line: \
+                 files = [\"tile.laz\"]",
+            ));
         }
         match file.products.is_empty() {
-            true => Err(Error::usage("there is no [[product]]")
-                .cure("add one: [[product]] verb = \"dem\", output = \"dem.tif\"")),
+            true => Err(Error::usage("there is no [[product]]").cure(
+                "add a line [[product]], and below it lines such as verb = \"dem\" and \
+                 output = \"dem.tif\"",
+            )),
             false => Ok(file),
         }
     }
@@ -117,6 +123,29 @@ impl RunFile {
     /// Returns the file; `None` if the tables are those of a program.
     pub(crate) fn name(&self) -> Option<&Path> {
         self.name.as_deref()
+    }
+
+    /// Returns an error of a product with the place of the key that it is about.
+    pub(crate) fn of_product(&self, error: Error, product: &ProductWords) -> Error {
+        let location = location_of(&error, &product.locations).unwrap_or(&product.location);
+        match (error.path(), &self.name) {
+            (Some(_), Some(name)) => error.within(format_args!(
+                "product {} ({}, {location})",
+                product.number,
+                name.display()
+            )),
+            (Some(_), None) => error.within(format_args!("product {}", product.number)),
+            _ => self.located(error, location),
+        }
+    }
+
+    /// Returns an error of the surface with the place of the key that it is about.
+    pub(crate) fn of_surface(&self, error: Error, locations: &[(String, String)]) -> Error {
+        let location = location_of(&error, locations).unwrap_or("[input]");
+        match (error.path(), &self.name) {
+            (Some(_), Some(name)) => error.within(format_args!("[input] of {}", name.display())),
+            _ => self.located(error, location),
+        }
     }
 
     /// Returns an error with the place where it is, unless it has one.
@@ -133,4 +162,17 @@ impl RunFile {
             None => error,
         }
     }
+}
+
+/// Returns the place of the first option that a message names, if its key is among `locations`.
+fn location_of<'a>(error: &Error, locations: &'a [(String, String)]) -> Option<&'a str> {
+    let message = error.message().plain();
+    let named = message
+        .split(' ')
+        .find_map(|word| word.strip_prefix("--"))?;
+    let named = named.trim_end_matches([',', ':']);
+    let found = locations
+        .iter()
+        .find(|(key, _)| key.replace('_', "-") == named);
+    found.map(|(_, location)| location.as_str())
 }

@@ -12,4 +12,4 @@ mod words;
 
 pub(crate) use file::RunFile;
 pub(crate) use refusal::refusal;
-pub(crate) use words::{ProductWords, Vocabulary};
+pub(crate) use words::{LIST, ProductWords, Vocabulary};

@@ -9,7 +9,7 @@ use clap::{Arg, ArgAction, Args, Command, CommandFactory, ValueHint};
 use super::file::{Product, RunFile};
 use super::nearest::nearest;
 use super::tree::{Entry, Value};
-use crate::cli::input::args::{Cli, SurfaceArgs, TileArgs};
+use crate::cli::input::args::{Cli, RunArgs, SurfaceArgs, TileArgs};
 use crate::cli::input::inputs::in_folder;
 use crate::error::{Error, Result};
 
@@ -18,6 +18,10 @@ pub(super) const FILES: &str = "files";
 
 /// The key of the verb of a product.
 const VERB: &str = "verb";
+
+/// The word that stands for several files of a surface where a verb has more than one surface. The
+/// single command reads them from a list of this name.
+pub(crate) const LIST: &str = "@files.txt";
 
 /// Verbs whose inputs are surfaces of their own: a product may have more `files`.
 const OF_SEVERAL_SURFACES: [&str; 3] = ["volume", "compare", "profile"];
@@ -31,6 +35,8 @@ pub(crate) struct ProductWords {
     pub(crate) verb: String,
     /// The words after the name of the program.
     pub(crate) words: Vec<OsString>,
+    /// Its number, from 1.
+    pub(crate) number: usize,
     /// True if one word stands for all files of the first surface.
     pub(crate) is_of_several: bool,
     /// Where the product is, for errors.
@@ -46,6 +52,8 @@ pub(crate) struct Vocabulary {
     surface: Command,
     /// Options of verbs that a product does not have.
     of_the_run: HashSet<String>,
+    /// Those that are typed for all products.
+    typed_once: Command,
 }
 
 impl Vocabulary {
@@ -68,10 +76,12 @@ impl Vocabulary {
         let global = program.get_arguments().map(|arg| arg.get_id().to_string());
         let mut of_the_run: HashSet<String> = ids(&tiles).into_iter().chain(global).collect();
         of_the_run.insert("json".to_owned());
+        let typed_once = RunArgs::augment_args(empty()).args(program.get_arguments().cloned());
         Vocabulary {
             program,
             surface,
             of_the_run,
+            typed_once,
         }
     }
 
@@ -105,15 +115,16 @@ impl Vocabulary {
     /// form.
     pub(crate) fn products(&self, file: &RunFile) -> Result<Vec<ProductWords>> {
         let surface = self.surface_words(file)?;
-        let product = |product: &Product| {
-            self.product(product, &surface, file)
+        let product = |(i, product): (usize, &Product)| {
+            self.product(i + 1, product, &surface, file)
                 .map_err(|e| file.located(e, &product.location))
         };
-        file.products.iter().map(product).collect()
+        file.products.iter().enumerate().map(product).collect()
     }
 
     fn product(
         &self,
+        number: usize,
         product: &Product,
         surface: &[OsString],
         file: &RunFile,
@@ -122,11 +133,7 @@ impl Vocabulary {
         let is_of_several = OF_SEVERAL_SURFACES.contains(&verb.get_name());
         let mut words = vec![OsString::from(verb.get_name())];
         match is_of_several {
-            // One word stands for the surface.
-            true => {
-                words.extend(self.files(file).into_iter().take(1));
-                words.extend(surface.iter().filter(|word| is_option(word)).cloned());
-            }
+            true => words.extend(of_one_word(surface)),
             false => words.extend(surface.iter().cloned()),
         }
         for entry in &product.entries {
@@ -143,30 +150,11 @@ impl Vocabulary {
         Ok(ProductWords {
             verb: verb.get_name().to_owned(),
             words,
+            number,
             is_of_several,
             location: product.location.clone(),
             locations,
         })
-    }
-
-    /// Returns the files of the surface, or the first of its lines if it has no other files.
-    fn files(&self, file: &RunFile) -> Vec<OsString> {
-        let words = |key: &str| {
-            let entries = file.input.iter().filter(|entry| entry.key == key);
-            let words = entries.filter_map(|entry| self.of_input(entry, file).ok());
-            let name = |word: OsString| match word.to_str().and_then(|text| text.split_once('=')) {
-                Some((_, value)) if is_option(&word) => value.into(),
-                _ => word,
-            };
-            words.flatten().map(name).collect::<Vec<OsString>>()
-        };
-        match words(FILES) {
-            files if files.is_empty() => {
-                let of_lines = file.input.iter().map(|entry| words(&entry.key));
-                of_lines.flatten().take(1).collect()
-            }
-            files => files,
-        }
     }
 
     /// Returns the verb of a product.
@@ -214,6 +202,9 @@ impl Vocabulary {
         if let Some(arg) = args().find(|arg| is_named(arg, &entry.key)) {
             return of_entry(arg, entry, file).map_err(at);
         }
+        if let Some(error) = self.of_the_run(&entry.key) {
+            return Err(at(error));
+        }
         let error = Error::usage(format!("`{}` is not an option of a surface", entry.key));
         let is_of_a_product = |arg: &Arg| is_named(arg, &entry.key);
         let mut verbs = self.verbs();
@@ -227,6 +218,31 @@ impl Vocabulary {
             (None, None) => "`breakline tin --help` lists the options of a surface".to_owned(),
         };
         Err(at(error.cure(cure)))
+    }
+
+    /// Returns an error for a key of what belongs to the run and not to its tables; `None` if it does
+    /// not.
+    fn of_the_run(&self, key: &str) -> Option<Error> {
+        let option = key.replace('_', "-");
+        let has = |command: &Command| {
+            let mut args = command.get_arguments();
+            args.any(|arg| !arg.is_positional() && is_named(arg, key))
+        };
+        if has(&self.typed_once) {
+            let error = Error::usage(format!("`{key}` is for all products"));
+            return Some(error.cure(format!(
+                "type it after the name of the run file: `breakline run FILE.toml --{option}`"
+            )));
+        }
+        let has_tiles = |verb: &Command| {
+            let mut args = verb.get_arguments();
+            args.any(|arg| self.of_the_run.contains(arg.get_id().as_str()) && is_named(arg, key))
+        };
+        self.verbs().any(has_tiles).then(|| {
+            Error::usage(format!("`{key}` is for jobs of single commands")).cure(
+                "leave it out: points of more than the memory are built in tiles by themselves",
+            )
+        })
     }
 
     fn of_product(&self, entry: &Entry, verb: &Command, file: &RunFile) -> Result<Vec<OsString>> {
@@ -250,9 +266,10 @@ impl Vocabulary {
             return of_entry(arg, entry, file);
         }
         let key = &entry.key;
+        if let Some(error) = self.of_the_run(key) {
+            return Err(error);
+        }
         Err(match verb.get_arguments().find(|arg| is_named(arg, key)) {
-            Some(arg) if is_of_the_run(arg) => Error::usage(format!("`{key}` is for all products"))
-                .cure("type it after `breakline run`, which has --memory, --dry-run and --json"),
             Some(_) => Error::usage(format!(
                 "`{key}` is an option of the surface, which all products share"
             ))
@@ -267,6 +284,29 @@ impl Vocabulary {
             }
         })
     }
+}
+
+/// Returns the words of a surface with one word for all of its files: a list of them, if there are
+/// several. Lines alone are a file as well, which single commands read as breaklines.
+fn of_one_word(surface: &[OsString]) -> Vec<OsString> {
+    let (options, files): (Vec<&OsString>, Vec<&OsString>) =
+        surface.iter().partition(|word| is_option(word));
+    let mut options: Vec<OsString> = options.into_iter().cloned().collect();
+    let breaklines = |word: &OsString| {
+        let file = word.to_str()?.strip_prefix("--breaklines=")?;
+        Some(OsString::from(file))
+    };
+    let name = match files[..] {
+        [file] => Some(file.clone()),
+        // The last one: lines that are files follow the others.
+        [] => (0..options.len()).rev().find_map(|i| {
+            let file = breaklines(&options[i])?;
+            options.remove(i);
+            Some(file)
+        }),
+        _ => Some(LIST.into()),
+    };
+    name.into_iter().chain(options).collect()
 }
 
 fn is_option(word: &OsString) -> bool {
