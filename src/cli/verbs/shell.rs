@@ -29,10 +29,8 @@ pub(crate) fn man(args: &ManArgs, console: &Console) -> Result<Exit> {
     program.build();
     let Some(folder) = &args.output else {
         let mut out = Stdout::new();
-        return match page_of(&program)
-            .render(&mut out)
-            .and_then(|()| out.flush())
-        {
+        let page = text_of(&page_of(&program))?;
+        return match out.write_all(page.as_bytes()).and_then(|()| out.flush()) {
             Err(error) if !out.is_closed() => Err(error.into()),
             _ => Ok(Exit::Done),
         };
@@ -69,6 +67,23 @@ fn page_of(command: &Command) -> Man {
         .manual("Terrain and GIS")
 }
 
+/// Returns the text of a page. Lines of examples and tables stay apart, as they are in the help.
+fn text_of(page: &Man) -> std::io::Result<String> {
+    let mut text = Vec::new();
+    page.render(&mut text)?;
+    let text = String::from_utf8_lossy(&text).into_owned();
+    let Some((before, more)) = text.split_once("\n.SH EXTRA\n") else {
+        return Ok(text);
+    };
+    let end = more.find("\n.SH ").unwrap_or(more.len());
+    let (extra, after) = more.split_at(end);
+    let extra = extra.trim_end();
+    Ok(format!(
+        "{before}\n.SH EXTRA\n.nf\n{extra}\n.fi\n{}",
+        after.trim_start()
+    ))
+}
+
 /// Adds a page for each verb, and for what is done with the object of a verb.
 fn add_pages(command: &Command, pages: &mut Vec<Man>) {
     for verb in command.get_subcommands().filter(|verb| !verb.is_hide_set()) {
@@ -82,8 +97,8 @@ fn write_page(page: &Man, path: &Path, overwrite: bool, set: &OutputSet) -> Resu
         io::require_absent(path)?;
     }
     let mut output = Output::create(path)?;
-    page.render(&mut output)
-        .map_err(|e| Error::from(e).in_file(path))?;
+    let written = text_of(page).and_then(|text| output.write_all(text.as_bytes()));
+    written.map_err(|e| Error::from(e).in_file(path))?;
     set.add(output);
     Ok(())
 }
