@@ -27,7 +27,13 @@ pub(crate) const LIST: &str = "@files.txt";
 const OF_SEVERAL_SURFACES: [&str; 3] = ["volume", "compare", "profile"];
 
 /// Options that name a file to write, and so belong to a product.
-const WRITTEN: [&str; 4] = ["output", "labels_output", "crossing_report", "flat_points"];
+const WRITTEN: [&str; 5] = [
+    "output",
+    "labels_output",
+    "histogram",
+    "crossing_report",
+    "flat_points",
+];
 
 /// A product, in the words of a single command.
 #[derive(Debug)]
@@ -220,8 +226,8 @@ impl Vocabulary {
         Err(at(error.cure(cure)))
     }
 
-    /// Returns an error for a key of what belongs to the run and not to its tables; `None` if it does
-    /// not.
+    /// Returns an error for a key of what belongs to the run and not to its tables; `None` for any
+    /// other.
     fn of_the_run(&self, key: &str) -> Option<Error> {
         let option = key.replace('_', "-");
         let has = |command: &Command| {
@@ -414,5 +420,48 @@ fn located(arg: &Arg, word: &str, folder: &Path) -> String {
         // The name of something built in, or a file.
         ValueHint::FilePath if folder.join(word).exists() => typed(folder.join(word)),
         _ => word.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_known_by_name_is_there() {
+        let vocabulary = Vocabulary::new();
+        for name in OF_SEVERAL_SURFACES {
+            let verb = vocabulary.verbs().find(|verb| verb.get_name() == name);
+            assert!(verb.is_some(), "{name}");
+        }
+        for id in WRITTEN {
+            let has = |verb: &Command| {
+                let mut args = verb.get_arguments();
+                args.any(|arg| {
+                    arg.get_id() == id && matches!(arg.get_value_hint(), ValueHint::AnyPath)
+                })
+            };
+            assert!(vocabulary.verbs().any(has), "{id}");
+        }
+    }
+
+    #[test]
+    fn a_surface_is_one_word_among_several() {
+        for (words, expected) in [
+            (&["a.xyz", "--class=2"][..], &["a.xyz", "--class=2"][..]),
+            (&["a.xyz", "--class=2", "b.xyz"], &[LIST, "--class=2"]),
+            (
+                &[
+                    "--breaklines=a.shp",
+                    "--breaklines=b.shp",
+                    "--bounds=0,0,1,1",
+                ],
+                &["b.shp", "--breaklines=a.shp", "--bounds=0,0,1,1"],
+            ),
+            (&["--boundary=a.shp"], &["--boundary=a.shp"]),
+        ] {
+            let words: Vec<OsString> = words.iter().map(OsString::from).collect();
+            assert_eq!(of_one_word(&words), expected);
+        }
     }
 }
