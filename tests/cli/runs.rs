@@ -1,14 +1,14 @@
 //! Several products of one surface, by a run file.
 
+mod interrupted;
+mod refused;
+
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 
 use breakline::cli::{RunOptions, RunTables, run_products};
-use breakline::error::Kind;
 use breakline::run::Context;
 use serde_json::Value;
 use tempfile::TempDir;
-use testkit::random::Random;
 
 use super::{Run, SLOPE, bytes, files_of, folder_with, geojson, run_in};
 
@@ -315,273 +315,79 @@ output = "sampled.csv"
 }
 
 #[test]
-fn wrong_files_are_errors_with_file_line_key_and_cure() {
-    let product = "[input]\nfiles = \"a.xyz\"\n[[product]]\n";
-    let input =
-        |text: &str| format!("[input]\n{text}\n[[product]]\nverb = \"dem\"\noutput = \"d.tif\"\n");
-    for (text, code, said) in [
-        ("".to_owned(), 2, &["site.toml: there is no [input]"][..]),
-        (
-            "[input]\nfiles = \"a.xyz\"\n".to_owned(),
-            2,
-            &["site.toml: there is no [[product]]"],
-        ),
-        (
-            "[input]\nfiles = \n".to_owned(),
-            1,
-            &["site.toml: line 2: "],
-        ),
-        (
-            "[inptu]\n".to_owned(),
-            2,
-            &["site.toml: line 1: `inptu` is not", "did you mean [input]?"],
-        ),
-        (
-            "input = 3\n".to_owned(),
-            1,
-            &["site.toml: line 1: `input` is one value"],
-        ),
-        (
-            input("fles = \"a.xyz\""),
-            2,
-            &[
-                "site.toml: line 2: `fles` is not an option of a surface",
-                "did you mean `files`?",
-            ],
-        ),
-        (
-            input("files = \"a.xyz\"\nresolution = 1"),
-            2,
-            &["line 3: `resolution`", "move it to a [[product]]"],
-        ),
-        (
-            input("files = \"a.xyz\"\ncrossing-report = \"c.csv\""),
-            2,
-            &["line 3: ", "move it to a [[product]]"],
-        ),
-        (
-            input("files = \"a.xyz\"\nmax-edge = true"),
-            2,
-            &["line 3: `max-edge` is true or false, expected a text"],
-        ),
-        (
-            input("files = \"a.xyz\"\nmax-edge = []"),
-            2,
-            &["line 3: `max-edge` is an empty list"],
-        ),
-        (
-            input("files = \"a.xyz\"\nmax-edge = 1979-05-27"),
-            2,
-            &["line 3: `max-edge` is a date"],
-        ),
-        (
-            input("files = \"a.xyz\"\nmax-edge = [[1]]"),
-            2,
-            &["line 3: `max-edge` has a list in its list"],
-        ),
-        (
-            input("files = \"a.xyz\"\nmax-edge = \"wide\""),
-            2,
-            &["line 3: `max-edge`: "],
-        ),
-        (
-            input("files = \"a.xyz\"\nadd-ridges = \"yes\""),
-            2,
-            &["line 3: `add-ridges` is one value, expected true or false"],
-        ),
-        (
-            input("files = \"none.xyz\""),
-            1,
-            &["none.xyz: no such file"],
-        ),
-        (
-            format!("{product}output = \"d.tif\"\n"),
-            2,
-            &[
-                "line 3: the product has no verb",
-                "add verb = \"dem\", or one of tin, ",
-            ],
-        ),
-        (
-            format!("{product}verb = \"den\"\n"),
-            2,
-            &["line 4: `den` is not a verb", "did you mean `dem`?"],
-        ),
-        (
-            format!("{product}verb = \"info\"\n"),
-            2,
-            &["line 4: `info` is not a verb"],
-        ),
-        (
-            format!("{product}verb = [1]\n"),
-            2,
-            &["line 4: the verb is a list"],
-        ),
-        (
-            format!("{product}verb = \"dem\"\nresoluton = 1\noutput = \"d.tif\"\n"),
-            2,
-            &[
-                "line 5: `resoluton` is not an option of `dem`",
-                "did you mean `resolution`?",
-            ],
-        ),
-        (
-            format!("{product}verb = \"dem\"\nresolution = -1\noutput = \"d.tif\"\n"),
-            2,
-            &["line 5: `resolution`: "],
-        ),
-        (
-            format!("{product}verb = \"dem\"\nmethod = \"cubic\"\noutput = \"d.tif\"\n"),
-            2,
-            &["line 5: `method`: `cubic`: expected one of linear, nearest"],
-        ),
-        (
-            format!("{product}verb = \"dem\"\nclass = 2\noutput = \"d.tif\"\n"),
-            2,
-            &[
-                "line 5: `class` is an option of the surface",
-                "move it to [input]",
-            ],
-        ),
-        (
-            format!("{product}verb = \"dem\"\nfiles = \"b.xyz\"\noutput = \"d.tif\"\n"),
-            2,
-            &["line 5: `files` is an option of the surface"],
-        ),
-        (
-            format!("{product}verb = \"dem\"\ntiles = \"2x2\"\noutput = \"d.tif\"\n"),
-            2,
-            &["line 5: `tiles` is for all products"],
-        ),
-        (
-            format!("{product}verb = \"volume\"\njson = true\n"),
-            2,
-            &["line 5: `json` is for all products"],
-        ),
-        (
-            format!("{product}verb = \"dem\"\n"),
-            2,
-            &["line 3: `output` is missing"],
-        ),
-        (
-            format!("{product}verb = \"volume\"\nplane = 1\nlevels = \"0:1:1\"\n"),
-            2,
-            &["cannot be used with"],
-        ),
-        (
-            format!("{product}verb = \"volume\"\n"),
-            2,
-            &["line 3: the base of the volumes is missing"],
-        ),
-        (
-            format!("{product}verb = \"sample\"\nat = \"at.csv\"\n"),
-            2,
-            &["line 3: no output is named"],
-        ),
-        (
-            format!("{product}verb = \"tin\"\noutput = \"x.tins\"\n"),
-            2,
-            &["x.tins: a TIN in parts is written alone"],
-        ),
-        (
-            format!("{product}verb = \"dem\"\noutput = \"d.xyz1\"\n"),
-            2,
-            &["d.xyz1: "],
-        ),
-        (
-            format!("{product}verb = \"dem\"\noutput = \"site.toml\"\n"),
-            2,
-            &["site.toml: "],
-        ),
+fn names_of_folders_and_outputs_are_taken_as_they_are() {
+    let text = DEM.replace("a.xyz", "*.xyz").replace("dem.tif", "@dem.tif");
+    let [own, other] = ["0 0 1\n3 0 1\n0 3 1\n", "0 0 7\n3 0 7\n0 3 7\n"];
+    let folder = folder_with(&[
+        ("site[1]/p.xyz", own),
+        ("site[1]/s.toml", &text),
+        ("site1/p.xyz", other),
+        ("only/own.toml", &text.replace("*.xyz", "p.xyz")),
+        ("only/p.xyz", own),
+    ]);
+    run(&folder, "site[1]/s.toml").works(&["site[1]/@dem.tif"]);
+    run(&folder, "only/own.toml").works(&["only/@dem.tif"]);
+    assert!(bytes(&folder, "site[1]/@dem.tif") == bytes(&folder, "only/@dem.tif"));
+}
+
+#[test]
+fn surfaces_have_the_names_that_single_commands_give_them() {
+    let profile = "[[product]]\nverb = \"profile\"\nalong = \"edge.geojson\"\n\
+        output = [\"p.csv\", \"p.svg\"]\n[[product]]\nverb = \"volume\"\nplane = 10\n";
+    for (input, name) in [
+        ("files = [\"a.xyz\", \"b.xyz\"]", "@files.txt"),
+        ("breaklines = \"edge.geojson\"", "edge.geojson"),
+        ("files = \"*[ab].xyz\"", "*[ab].xyz"),
     ] {
-        let folder = folder(&text);
-        let before = files_of(folder.path());
-        for words in ["site.toml", "site.toml --dry-run"] {
-            let run = run(&folder, words);
-            assert_eq!(run.code, code, "{text}: {}", run.stderr);
-            run.fails(code, said);
+        let [together, single] =
+            [(); 2].map(|()| folder(&format!("[input]\n{input}\nmax-edge = \"none\"\n{profile}")));
+        let plan = json(&run(&together, "site.toml --dry-run --json"));
+        let printed = run(&together, "site.toml --dry-run").stdout;
+        let has_list = name.starts_with('@');
+        assert_eq!(
+            printed.contains("  printf '%s\\n' a.xyz b.xyz > files.txt\n"),
+            has_list,
+            "{printed}"
+        );
+        if has_list {
+            assert_eq!(texts(&plan["lists"]["files.txt"]), ["a.xyz", "b.xyz"]);
+            std::fs::write(single.path().join("files.txt"), "a.xyz\nb.xyz\n").unwrap();
         }
-        assert_unchanged(&folder, &before);
-    }
-    let missing = run(&folder(""), "none.toml");
-    missing.fails(1, &["none.toml: "]);
-    let folder = folder(DEM);
-    std::fs::write(
-        folder.path().join("site.toml"),
-        b"[input]\nfiles = \"\xff\"\n",
-    )
-    .unwrap();
-    run(&folder, "site.toml").fails(1, &["site.toml: line 2: the text is not UTF-8"]);
-}
-
-#[test]
-fn products_do_not_write_what_others_write_or_read() {
-    let second = |text: &str| format!("{DEM}[[product]]\n{text}");
-    for (text, said) in [
-        (
-            second("verb = \"slope\"\noutput = \"dem.tif\"\n"),
-            "dem.tif: product 2 (line 6): another product writes this file, too",
-        ),
-        (
-            second("verb = \"slope\"\noutput = \"./dem.tif\"\n"),
-            "another product writes this file, too",
-        ),
-        (
-            second("verb = \"drape\"\nlines = \"edge.geojson\"\noutput = \"edge.geojson\"\n"),
-            "edge.geojson: the output is one of the inputs",
-        ),
-        (
-            second(
-                "verb = \"tin\"\noutput = \"flat.ply\"\n[[product]]\nverb = \"compare\"\nfiles = \"flat.ply\"\n",
-            ),
-            "flat.ply: product 2 (line 6): the output is one of the inputs",
-        ),
-        (
-            second(
-                "verb = \"accuracy\"\ncheckpoints = \"at.csv\"\n[[product]]\nverb = \"volume\"\nplane = 1\noutput = \"at.csv\"\n",
-            ),
-            "at.csv: product 3 (line 9): the output is one of the inputs",
-        ),
-    ] {
-        let folder = folder(&text);
-        run_in(&folder, &["tin", "flat.xyz", "-o", "flat.ply"]).works(&[]);
-        let before = files_of(folder.path());
-        let run = run(&folder, "site.toml --overwrite");
-
-        assert_eq!(run.code, 2, "{text}: {}", run.stderr);
-        assert!(run.stderr.contains(said), "{said}: {}", run.stderr);
-        assert_unchanged(&folder, &before);
+        run(&together, "site.toml").ends(0, &[]);
+        let command = plan["products"][0]["command"].as_str().unwrap();
+        let words = command.split(' ').skip(1);
+        let words: Vec<&str> = words.map(|word| word.trim_matches('\'')).collect();
+        run_in(&single, &words).works(&[]);
+        for file in ["p.csv", "p.svg"] {
+            assert!(
+                bytes(&together, file) == bytes(&single, file),
+                "{file} of {command}"
+            );
+        }
+        let table = String::from_utf8(bytes(&together, "p.csv")).unwrap();
+        assert!(table.contains(name), "{name}: {table}");
     }
 }
 
 #[test]
-fn a_product_that_fails_late_leaves_nothing() {
-    let text = format!(
-        "{DEM}[[product]]\nverb = \"sample\"\nat = \"edge.geojson\"\noutput = \"s.geojson\"\n"
+fn options_of_building_may_be_for_the_second_surface() {
+    let text = "[input]\nfiles = \"r.tif\"\nmax-edge = \"none\"\n\
+        [[product]]\nverb = \"compare\"\nfiles = \"a.xyz\"\n";
+    let folder = folder(text);
+    run_in(&folder, &["dem", "flat.xyz", "-o", "r.tif"]).works(&[]);
+    let single = ["compare", "r.tif", "a.xyz", "--max-edge", "none"];
+    let single = run_in(&folder, &single);
+    single.works(&[]);
+    let together = run(&folder, "site.toml");
+    together.works(&[]);
+    assert_eq!(
+        together.stdout,
+        format!("product 1: compare\n{}", single.stdout)
     );
-    let folder = folder(&text);
-    let before = files_of(folder.path());
-    run(&folder, "site.toml").fails(1, &["edge.geojson: product 2 (sample), "]);
-    assert_unchanged(&folder, &before);
-    // What is there stays.
-    std::fs::write(folder.path().join("dem.tif"), "kept").unwrap();
-    run(&folder, "site.toml --overwrite").fails(1, &["product 2 (sample)"]);
-    assert_eq!(bytes(&folder, "dem.tif"), b"kept");
-}
-
-#[test]
-fn a_canceled_run_leaves_nothing() {
-    let folder = folder(DEM);
-    let before = files_of(folder.path());
-    let canceled = AtomicBool::new(true);
-    let context = Context {
-        cancel: &canceled,
-        ..Context::default()
-    };
-    let file = folder.path().join("site.toml");
-    let error = run_products(RunTables::File(&file), &RunOptions::default(), &context);
-    assert_eq!(error.unwrap_err().kind(), Kind::Canceled);
-    assert_unchanged(&folder, &before);
+    // Where there is nothing to build, they are an error.
+    let wrong = text.replace("compare\"\nfiles = \"a.xyz\"", "dem\"\noutput = \"d.tif\"");
+    std::fs::write(folder.path().join("site.toml"), wrong).unwrap();
+    run(&folder, "site.toml").fails(2, &["--max-edge is for building a TIN"]);
 }
 
 #[test]
@@ -593,73 +399,6 @@ fn a_limit_that_is_not_met_is_a_failure_and_the_files_are_there() {
     let done = run(&folder, "site.toml");
     assert_eq!(done.code, 1, "{}", done.stderr);
     assert!(folder.path().join("dem.tif").exists());
-}
-
-#[test]
-fn damaged_files_are_errors_and_write_nothing() {
-    let random = &mut Random(7);
-    let context = Context::default();
-    let options = RunOptions {
-        overwrite: true,
-        ..RunOptions::default()
-    };
-    let text = "[input]\nfiles = [\"a.xyz\", \"b.xyz\"]\nmax-edge = 10.5\n\n[[product]]\nverb = \"volume\"\n\
-        plane = 11\noutput = \"v.csv\"\n\n[[product]]\nverb = \"sample\"\nat = \"at.csv\"\nadd = [\"height\"]\noutput = \"s.csv\"\n";
-    let folder = folder(text);
-    let before = files_of(folder.path());
-    let file = folder.path().join("site.toml");
-    let path = folder.path().display().to_string();
-    let [mut refused, mut written] = [0; 2];
-    for _ in 0..500 {
-        let mut damaged = text.as_bytes().to_vec();
-        for _ in 0..=random.index(3) {
-            damage(&mut damaged, random);
-        }
-        std::fs::write(&file, &damaged).unwrap();
-        match run_products(RunTables::File(&file), &options, &context) {
-            Ok(_) => written += 1,
-            Err(error) => {
-                refused += 1;
-                let said = error.to_string();
-                assert!(
-                    said.contains(&path),
-                    "{said}\n{}",
-                    String::from_utf8_lossy(&damaged)
-                );
-                assert_unchanged(&folder, &before);
-            }
-        }
-        remove_others(folder.path(), &before);
-    }
-    assert!(
-        refused > 300 && written > 20,
-        "{refused} refused, {written} written"
-    );
-}
-
-/// Changes a byte, removes or repeats some, or swaps lines. No path leaves the folder.
-fn damage(text: &mut Vec<u8>, random: &mut Random) {
-    if text.is_empty() {
-        return;
-    }
-    let at = random.index(text.len());
-    let end = (at + 1 + random.index(12)).min(text.len());
-    match random.below(5) {
-        0 => text[at] = random.pick(b"=[]\"'\n .,#\\0-9e_x\xff"),
-        1 => drop(text.drain(at..end)),
-        2 => {
-            let again = text[at..end].to_vec();
-            text.splice(at..at, again);
-        }
-        3 => text.truncate(at),
-        _ => {
-            let lines: Vec<&[u8]> = text.split_inclusive(|&byte| byte == b'\n').collect();
-            let mut lines: Vec<Vec<u8>> = lines.into_iter().map(<[u8]>::to_vec).collect();
-            let [one, other] = [(); 2].map(|()| random.index(lines.len()));
-            lines.swap(one, other);
-            *text = lines.concat();
-        }
-    }
 }
 
 fn remove_others(folder: &Path, known: &[String]) {
@@ -785,6 +524,9 @@ fn there_is_a_man_page_for_each_verb() {
             text.contains(".TH breakline-") && text.contains(".SH NAME"),
             "{text}"
         );
+        // Examples are not filled.
+        let extra = text.matches("\n.SH EXTRA\n").count();
+        assert_eq!(text.matches("\n.SH EXTRA\n.nf\n").count(), extra, "{text}");
     }
     run_in(&folder, &["man", "-o", "man1"]).fails(1, &["--overwrite"]);
     run_in(&folder, &["man", "-o", "man1", "--overwrite"]).works(&[]);
