@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use breakline::data::Tiling;
-use breakline::run::{self, TerrainFormat, TerrainTilesOptions};
+use breakline::run::{self, Existing, TerrainFolder, TerrainFormat, TerrainTilesOptions};
 use breakline::terrain::PyramidRule;
 use pyo3::prelude::*;
 
@@ -67,9 +67,8 @@ pub(crate) fn terrain_tiles(
     let surface = surface.product();
     let (target, overwrite) = folder;
     let report = work::run(py, &call, |context| -> Result<_> {
-        Ok(run::write_terrain_tiles(
-            &surface, &options, &target, overwrite, context,
-        )?)
+        let folder = TerrainFolder::create(&target, Existing::of(overwrite))?;
+        Ok(run::write_terrain_tiles(&surface, &options, folder, context)?)
     })?;
     let level = |level: &run::LevelReport| {
         let sums = &level.sums;

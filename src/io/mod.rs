@@ -54,7 +54,7 @@ pub use bytes::output::{
     Abandoned, Destination, Output, OutputSet, abandon_outputs, is_standard_output, is_stream,
     probe, remove_abandoned, require_absent,
 };
-pub(crate) use bytes::output::{OutputFolder, Temporary, followed};
+pub(crate) use bytes::output::{FolderKind, OutputFolder, Temporary, followed};
 pub use bytes::watch::Watch;
 pub(crate) use codec::prj;
 pub use codec::{

@@ -122,8 +122,19 @@ fn a_folder_is_replaced_only_if_asked_for() {
     assert!(names.contains(&"tileset.json".to_owned()), "{names:?}");
     assert!(names.contains(&"content/0/0/0.glb".to_owned()), "{names:?}");
     assert!(!names.contains(&"layer.json".to_owned()), "{names:?}");
-    let other = [RIDGE[..5].to_vec(), vec![".", "--overwrite"]].concat();
-    run_in(&folder, &other).fails(2, &["it has no layer.json or tileset.json"]);
+    let at = |target| [RIDGE[..5].to_vec(), vec![target, "--overwrite"]].concat();
+    // A file of somebody else, in a folder of tiles: before anything is read.
+    std::fs::write(tiles.join("index.html"), "mine").unwrap();
+    let refused = run_in(&folder, &at("tiles"));
+    refused.fails(2, &["not replaced", "index.html is not of terrain tiles"]);
+    assert!(!refused.stderr.contains("vertices"), "{}", refused.stderr);
+    assert_eq!(std::fs::read(tiles.join("index.html")).unwrap(), b"mine");
+    std::fs::create_dir(folder.path().join("web")).unwrap();
+    std::fs::write(folder.path().join("web/layer.json"), "{}").unwrap();
+    let other = ["no layer.json or tileset.json that this program"];
+    run_in(&folder, &at("web")).fails(2, &other);
+    run_in(&folder, &at(".")).fails(2, &["no name of its own"]);
+    run_in(&folder, &at("no/tiles")).fails(1, &["does not exist", "mkdir -p no"]);
 }
 
 #[test]

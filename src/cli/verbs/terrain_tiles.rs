@@ -10,7 +10,10 @@ use crate::cli::report::stdout::print;
 use crate::cli::report::summary::{counted, print_surface};
 use crate::data::Tiling;
 use crate::error::Result;
-use crate::run::{self, Degrees, LevelReport, SurfaceReport, TerrainFormat, TerrainTilesOptions};
+use crate::run::{
+    self, Degrees, Existing, LevelReport, SurfaceReport, TerrainFolder, TerrainFormat,
+    TerrainTilesOptions,
+};
 use crate::terrain::{Method, PyramidRule};
 
 /// Writes a surface as levels of terrain tiles.
@@ -18,6 +21,8 @@ pub(crate) fn run(args: &TerrainTilesArgs, console: &Console) -> Result<Exit> {
     pair::refuse_tables(&args.surface, "terrain-tiles")?;
     let options = options(args);
     options.rule.check()?;
+    // Before the surface, which may take minutes.
+    let folder = TerrainFolder::create(&args.output, Existing::of(args.overwrite))?;
     let mut plan = SurfacePlan::resolve(&args.surface, console)?;
     // Tiles are in degrees.
     plan.request.systems.degrees = Degrees::Allow;
@@ -25,8 +30,7 @@ pub(crate) fn run(args: &TerrainTilesArgs, console: &Console) -> Result<Exit> {
     let mut surface =
         run::open_surface(&plan.request, Method::Linear, args.memory.memory, &context)?;
     print_surface(&SurfaceReport::take(&mut surface)?, console);
-    let report =
-        run::write_terrain_tiles(&surface, &options, &args.output, args.overwrite, &context)?;
+    let report = run::write_terrain_tiles(&surface, &options, folder, &context)?;
     for level in &report.levels {
         console.line(format_args!("{:11} {}", name_of(level), text(level)));
     }

@@ -11,21 +11,72 @@ use super::surface::SurfaceProduct;
 use crate::crs::{Crs, Transform};
 use crate::data::{TerrainTile, TilePosition, Tiling};
 use crate::error::{Error, Result, Setting, wording};
-use crate::io::OutputFolder;
+use crate::io::{FolderKind, OutputFolder};
 use crate::io::quantized_mesh::{LayerOptions, encode, layer_json};
 use crate::io::tiles_3d::{self, TilesetRoot};
 use crate::run::context::notice::Notice;
 use crate::run::context::units::Units;
 use crate::run::context::{Context, Journal, Size, Stage};
 use crate::run::sources::proj::{self, TransformOptions};
+use crate::run::verbs::targets::Existing;
 use crate::terrain::{Level, Pyramid, PyramidRule, TileReport};
 
 /// The file by which a viewer finds quantized meshes, and that by which it finds 3D Tiles.
 const LAYER: &str = "layer.json";
 const TILESET: &str = "tileset.json";
 
-/// The files by which a folder is known to be one of tiles.
-const MARKS: &[&str] = &[LAYER, TILESET];
+/// The folders that are replaced.
+static TILES: FolderKind = FolderKind {
+    name: "terrain tiles",
+    marks: &[LAYER, TILESET],
+    has: may_be_of_tiles,
+};
+
+/// Returns true if a file has the path of one in a folder of tiles.
+fn may_be_of_tiles(path: &Path) -> bool {
+    let Some(text) = path.to_str() else {
+        return false;
+    };
+    let parts: Vec<&str> = text.split(std::path::MAIN_SEPARATOR).collect();
+    let is_number = |part: &str| part.parse::<u32>().is_ok();
+    let is_root = |part: &str| part.split('-').count() == 3 && part.split('-').all(is_number);
+    let (around, numbers) = match parts[..] {
+        [index] => return [LAYER, TILESET].contains(&index),
+        [ref around @ .., level, column, row] => (around, [level, column, row]),
+        _ => return false,
+    };
+    let Some((row, extension)) = numbers[2].split_once('.') else {
+        return false;
+    };
+    let has_folder = match (extension, around) {
+        ("terrain", []) => true,
+        ("glb", ["content"]) | ("subtree", ["subtrees"]) => true,
+        ("glb", [root, "content"]) | ("subtree", [root, "subtrees"]) => is_root(root),
+        _ => false,
+    };
+    has_folder && [numbers[0], numbers[1], row].into_iter().all(is_number)
+}
+
+/// The folder in which terrain tiles will be: it appears with all of them or not at all.
+#[derive(Debug)]
+#[must_use = "tiles are to be written into it"]
+pub struct TerrainFolder(OutputFolder);
+
+impl TerrainFolder {
+    /// Makes sure that tiles can be written to a folder. One that exists is replaced if that is
+    /// asked for, if this program has written it, and if it has no other files.
+    ///
+    /// # Errors
+    /// If there is something that is not replaced, or the folder around it does not exist or cannot
+    /// be written to.
+    pub fn create(target: &Path, existing: Existing) -> Result<Self> {
+        let folder = match existing {
+            Existing::Keep => OutputFolder::create(target, &TILES)?,
+            Existing::Replace => OutputFolder::replace(target, &TILES)?,
+        };
+        Ok(TerrainFolder(folder))
+    }
+}
 
 /// The format of terrain tiles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -81,8 +132,7 @@ pub struct TerrainTilesReport {
     pub notices: Vec<Notice>,
 }
 
-/// Writes a surface as levels of tiles, in a folder that appears at the end or not at
-/// all. A folder that exists is replaced if `may_replace`, and if it is one of tiles.
+/// Writes a surface as levels of tiles, in a folder that appears at the end or not at all.
 ///
 /// Heights are measured against the triangles as they are written: no vertex of the surface is
 /// further from them than the bound of the level, unless a [`Notice::BeyondBound`] says so.
@@ -98,13 +148,12 @@ pub struct TerrainTilesReport {
 pub fn write_terrain_tiles(
     surface: &SurfaceProduct,
     options: &TerrainTilesOptions,
-    target: &Path,
-    may_replace: bool,
+    folder: TerrainFolder,
     context: &Context,
 ) -> Result<TerrainTilesReport> {
     let journal = Journal::new(context);
     options.rule.check()?;
-    let folder = OutputFolder::create(target, may_replace, MARKS)?;
+    let folder = folder.0;
     let mut pyramid = surface.with_faces(context, |faces| {
         let placing = Placing::new(faces.crs(), options, &journal)?;
         let pyramid = Pyramid::new(
@@ -117,7 +166,7 @@ pub fn write_terrain_tiles(
         placing.warn(&journal);
         Ok(pyramid)
     })?;
-    let layout = Layout::new(options, &pyramid, target)?;
+    let layout = Layout::new(options, &pyramid, folder.target())?;
     let levels = write_levels(&mut pyramid, &layout, options, &folder, &journal)?;
     for (path, bytes) in layout.index(&pyramid)? {
         folder.write(&path, &bytes)?;
@@ -357,5 +406,44 @@ impl Placing {
             .iter()
             .flat_map(|transform| transform.warnings());
         warnings.for_each(|text| journal.add(Notice::Transform(text)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::may_be_of_tiles;
+
+    #[test]
+    fn files_of_tiles_are_known_by_their_paths() {
+        let own = [
+            "layer.json",
+            "tileset.json",
+            "0/1/0.terrain",
+            "content/0/0/0.glb",
+            "subtrees/12/3/4.subtree",
+            "3-4-5/content/0/0/0.glb",
+            "3-4-5/subtrees/0/0/0.subtree",
+        ];
+        let others = [
+            "index.html",
+            "web/layer.json",
+            "photos/a.jpg",
+            "0/1.terrain",
+            "0/1/x.terrain",
+            "0/1/0.glb",
+            "content/0/0/0.terrain",
+            "a-b-c/content/0/0/0.glb",
+            "web/0/1/0.terrain",
+            "0/1/0.terrain.bak",
+        ];
+        let is_own = |path: &&str| {
+            let native: std::path::PathBuf = Path::new(path).components().collect();
+            may_be_of_tiles(&native)
+        };
+        assert!(own.iter().all(|path| is_own(path)));
+        let taken = others.iter().find(|path| is_own(path));
+        assert_eq!(taken, None);
     }
 }

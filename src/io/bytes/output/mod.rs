@@ -8,7 +8,7 @@ mod temporary;
 
 pub(crate) use file::followed;
 pub use file::{Output, is_standard_output, is_stream, probe, remove_abandoned, require_absent};
-pub(crate) use folder::OutputFolder;
+pub(crate) use folder::{FolderKind, OutputFolder};
 pub use set::{Destination, OutputSet};
 pub(crate) use temporary::Temporary;
 pub use temporary::{Abandoned, abandon_outputs};
