@@ -12,9 +12,9 @@ use crate::requests;
 use crate::surface::Surface;
 use crate::work::{self, Call};
 
-/// A level in Python: its number, its bound and the largest distance, and the numbers of tiles,
+/// A level in Python: its number, its bound, the one that holds and the largest distance, and the numbers of tiles,
 /// bytes, vertices, triangles, heights, and heights beyond the bound.
-type Level = (u8, [f64; 2], [u64; 6]);
+type Level = (u8, [f64; 3], [u64; 6]);
 
 /// The options: format, tiling, bound, finest level, height around the surface, what is added to
 /// heights, and true if tiles are not compressed.
@@ -68,7 +68,9 @@ pub(crate) fn terrain_tiles(
     let (target, overwrite) = folder;
     let report = work::run(py, &call, |context| -> Result<_> {
         let folder = TerrainFolder::create(&target, Existing::of(overwrite))?;
-        Ok(run::write_terrain_tiles(&surface, &options, folder, context)?)
+        Ok(run::write_terrain_tiles(
+            &surface, &options, folder, context,
+        )?)
     })?;
     let level = |level: &run::LevelReport| {
         let sums = &level.sums;
@@ -80,7 +82,11 @@ pub(crate) fn terrain_tiles(
             sums.heights as u64,
             sums.beyond as u64,
         ];
-        (level.level, [level.bound, sums.largest], counts)
+        (
+            level.level,
+            [level.bound, level.within, sums.largest],
+            counts,
+        )
     };
     Ok(report.levels.iter().map(level).collect())
 }

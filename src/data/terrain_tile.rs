@@ -1,9 +1,10 @@
 use std::f64::consts::PI;
 
+use crate::crs::SEMI_AXES;
 use crate::error::{Error, Result};
 
 /// The semi-major axis of WGS 84, in meters.
-const RADIUS: f64 = 6_378_137.0;
+const RADIUS: f64 = SEMI_AXES[0];
 
 /// Half the width of the world in Web Mercator, in meters.
 const MERCATOR: f64 = PI * RADIUS;
@@ -138,9 +139,9 @@ impl Tiling {
 /// Triangles of one level over one square, with all coordinates in whole steps.
 ///
 /// A vertex is so many steps from the west and the south of the tile, of which there are
-/// [`STEPS`](Self::STEPS), and so many steps above its lowest height. All tiles of a level have
-/// steps of one size, a power of two, and lowest heights that are multiples of it: equal heights in
-/// two tiles are equal to the last bit.
+/// [`STEPS`](Self::STEPS), and so many steps above its lowest height. Steps are powers of two, and
+/// all heights of a level are multiples of the largest one: equal heights in two tiles are equal to
+/// the last bit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TerrainTile {
     /// Which tile it is.

@@ -57,6 +57,7 @@ settings! {
     Epoch = "epoch",
     Exaggeration = "exaggeration",
     Extent = "extent",
+    Fill = "fill",
     Flat = "flat",
     FlatBuffer = "flat-buffer",
     FlatHeight = "flat-height",

@@ -126,6 +126,7 @@ pub use lines::{
 pub(crate) use near_lines::NearLines;
 pub(crate) use nesting::Nesting;
 pub(crate) use point_rim::deciding;
+pub(crate) use pyramid::is_height;
 pub use pyramid::{Level, Pyramid, PyramidRule, TileReport};
 pub use rasterize::{Canvas, CanvasBlock, CellValue, Dem, DemOfParts, GradientMap, GradientSource};
 pub use rim_rule::RimRule;

@@ -19,7 +19,9 @@ class TerrainLevel(NamedTuple):
     level : int
         0 for the level with the largest tiles.
     bound : float
-        No vertex of the surface is further from the triangles than this, in meters.
+        No vertex of the surface should be further from the triangles than this, in meters.
+    within : float
+        No vertex of the surface is further from them: the bound, or more. Then there is a warning, too.
     largest : float
         The largest distance of a vertex, in meters.
     tiles, bytes, vertices, triangles : int
@@ -27,12 +29,12 @@ class TerrainLevel(NamedTuple):
     heights : int
         The vertices that were measured.
     beyond : int
-        The vertices that are further off than the bound, because the steps of a tile are too large. Then there is a
-        warning, too.
+        The vertices that are further off, because the steps of a tile are too large.
     """
 
     level: int
     bound: float
+    within: float
     largest: float
     tiles: int
     bytes: int
@@ -69,7 +71,7 @@ def terrain_tiles(
     output : path
         The folder to write. It appears with all its files at the end, or not at all.
     overwrite : bool
-        Replace the folder, if it is one of terrain tiles.
+        Replace the folder, if Breakline has written tiles into it, and it has no other files.
     format : str
         ``"quantized-mesh"``, with ``layer.json``, or ``"3dtiles"``.
     tiling : str
@@ -84,7 +86,7 @@ def terrain_tiles(
     vertical_offset : float, optional
         The height of the geoid above the ellipsoid in meters, which is added to heights.
     no_gzip : bool
-        Do not compress tiles.
+        Do not compress quantized meshes. 3D Tiles are never compressed.
     memory : int or str, optional
         As for :func:`sample`.
     threads, progress

@@ -20,7 +20,7 @@ use crate::terrain::{Method, PyramidRule};
 pub(crate) fn run(args: &TerrainTilesArgs, console: &Console) -> Result<Exit> {
     pair::refuse_tables(&args.surface, "terrain-tiles")?;
     let options = options(args);
-    options.rule.check()?;
+    options.check()?;
     // Before the surface, which may take minutes.
     let folder = TerrainFolder::create(&args.output, Existing::of(args.overwrite))?;
     let mut plan = SurfacePlan::resolve(&args.surface, console)?;
@@ -74,7 +74,7 @@ fn text(level: &LevelReport) -> String {
         counted(level.tiles as u64, "tile"),
         counted(level.sums.triangles as u64, "triangle"),
         level.bytes,
-        level.bound,
+        level.within,
     )
 }
 
@@ -82,6 +82,7 @@ fn as_json(level: &LevelReport) -> serde_json::Value {
     json!({
         "level": level.level,
         "bound": level.bound,
+        "within": level.within,
         "tiles": level.tiles,
         "bytes": level.bytes,
         "vertices": level.sums.vertices,

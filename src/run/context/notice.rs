@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use super::units::{Quantity, Units};
-use crate::crs::Crs;
+use crate::crs::{Crs, Heights};
 use crate::data::Bounds;
 use crate::error::Wording;
 use crate::run::request::lines::LineRole;
@@ -210,17 +210,18 @@ pub enum Notice {
     },
     /// Vertices were added on ridges and valleys; with their number.
     RidgesAdded(usize),
-    /// Heights are used as if they were above the ellipsoid; with the EPSG code of their system, if
-    /// it is stated.
-    HeightsAboveEllipsoid(Option<u32>),
-    /// Heights that are further from the triangles of a level of tiles than its bound.
+    /// Heights are used as if they were above the ellipsoid; with what they are counted from, as far
+    /// as that is stated.
+    HeightsAboveEllipsoid(Heights),
+    /// The surface is further from the triangles of a level of tiles than its bound.
     BeyondBound {
         /// The level.
         level: u8,
-        /// How many heights.
+        /// How many heights the steps of the format are too large for; if none, the earth is curved
+        /// within the triangles.
         count: usize,
-        /// The largest distance, in meters.
-        largest: f64,
+        /// No height is further from the triangles than this, in meters.
+        within: f64,
         /// The bound, in meters.
         bound: f64,
     },

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::units::Units;
-use crate::crs::Crs;
+use crate::crs::{Crs, Heights};
 use crate::error::{Setting, Wording, wording};
 
 pub(super) fn first_of_bands(path: &Path, bands: u16) -> String {
@@ -55,10 +55,18 @@ pub(super) fn different_units(plan: &str, height: &str) -> String {
     format!("x and y are in units of the {plan}, heights in units of the {height}")
 }
 
-pub(super) fn above_ellipsoid(code: Option<u32>) -> Wording {
-    let what = match code {
-        Some(code) => format!("heights are those of EPSG:{code}, which is not the ellipsoid"),
-        None => "no system of heights is stated".to_owned(),
+pub(super) fn above_ellipsoid(heights: Heights) -> Wording {
+    let what = match heights {
+        Heights::Vertical(code) => {
+            format!("heights are those of EPSG:{code}, which is not the ellipsoid")
+        }
+        Heights::None => "no system of heights is stated".to_owned(),
+        Heights::Named => {
+            "the system of heights is not the ellipsoid, and has no known code".to_owned()
+        }
+        Heights::Unknown | Heights::Ellipsoid => {
+            "the unit of heights is stated, but not what they are counted from".to_owned()
+        }
     };
     wording![
         what,
@@ -68,19 +76,17 @@ pub(super) fn above_ellipsoid(code: Option<u32>) -> Wording {
     ]
 }
 
-pub(super) fn beyond_bound(level: u8, count: usize, [largest, bound]: [f64; 2]) -> Wording {
-    let heights = if count == 1 {
-        "height is"
-    } else {
-        "heights are"
+pub(super) fn beyond_bound(level: u8, count: usize, [within, bound]: [f64; 2]) -> Wording {
+    let why = match count {
+        0 => "the earth is curved within them".to_owned(),
+        1 => "32767 steps along a tile are too few for 1 height".to_owned(),
+        _ => format!("32767 steps along a tile are too few for {count} heights"),
     };
     wording![
         format!(
-            "level {level}: {count} {heights} further from the triangles than {bound:.3} m, at most \
-             {largest:.3} m: 32767 steps along a tile are too few; pass a larger "
+            "level {level}: the surface is within {within:.3} m of the triangles, not within \
+             {bound:.3} m: {why}; for bounds that hold, pass a larger "
         ),
-        Setting::MaxError,
-        " or ",
-        Setting::MaxLevel
+        Setting::MaxError
     ]
 }

@@ -206,9 +206,9 @@ fn text(notice: &Notice) -> Wording {
         Notice::FlatTriangles { count, share, has_ridges } => {
             flat_triangles(*count, *share, *has_ridges)
         }
-        Notice::HeightsAboveEllipsoid(code) => above_ellipsoid(*code),
-        Notice::BeyondBound { level, count, largest, bound } => {
-            beyond_bound(*level, *count, [*largest, *bound])
+        Notice::HeightsAboveEllipsoid(heights) => above_ellipsoid(*heights),
+        Notice::BeyondBound { level, count, within, bound } => {
+            beyond_bound(*level, *count, [*within, *bound])
         }
         Notice::Simplified { vertices, heights, bound, largest, root_mean_square, line_vertices } => {
             simplified([*vertices, *heights], [bound, largest, root_mean_square], *line_vertices).into()

@@ -3,23 +3,24 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
 
 use super::surface::SurfaceProduct;
-use crate::crs::{Crs, Transform};
+use crate::crs::{Crs, Heights, Transform};
 use crate::data::{TerrainTile, TilePosition, Tiling};
 use crate::error::{Error, Result, Setting, wording};
-use crate::io::{FolderKind, OutputFolder};
 use crate::io::quantized_mesh::{LayerOptions, encode, layer_json};
 use crate::io::tiles_3d::{self, TilesetRoot};
+use crate::io::{FolderKind, OutputFolder};
 use crate::run::context::notice::Notice;
 use crate::run::context::units::Units;
 use crate::run::context::{Context, Journal, Size, Stage};
 use crate::run::sources::proj::{self, TransformOptions};
 use crate::run::verbs::targets::Existing;
-use crate::terrain::{Level, Pyramid, PyramidRule, TileReport};
+use crate::terrain::{Level, Pyramid, PyramidRule, TileReport, is_height};
 
 /// The file by which a viewer finds quantized meshes, and that by which it finds 3D Tiles.
 const LAYER: &str = "layer.json";
@@ -100,10 +101,36 @@ pub struct TerrainTilesOptions {
     /// geoid, if heights are above it. `None` adds nothing, and a notice says so unless the
     /// coordinate system has heights above the ellipsoid.
     pub vertical_offset: Option<f64>,
-    /// Tiles are not compressed.
+    /// Quantized meshes are not compressed. 3D Tiles never are.
     pub plain: bool,
     /// The name of the terrain; by default that of the folder.
     pub name: Option<String>,
+}
+
+impl TerrainTilesOptions {
+    /// Returns an error if the options make no sense, whatever the surface is.
+    ///
+    /// # Errors
+    /// Names the setting.
+    pub fn check(&self) -> Result<()> {
+        self.rule.check()?;
+        if self.format == TerrainFormat::Tiles3d && self.rule.tiling != Tiling::Geographic {
+            return Err(Error::unsupported(
+                "3D Tiles are squares of degrees, and cannot be divided as Web Mercator is",
+            ));
+        }
+        match self.vertical_offset {
+            Some(offset) if !is_height(offset) => Err(Error::usage(format!(
+                "{offset} is not a height of the geoid above the ellipsoid: one from -20000 to 20000 \
+                 m is needed"
+            ))
+            .cure(wording![
+                "pass ",
+                Setting::VerticalOffset.number("METERS")
+            ])),
+            _ => Ok(()),
+        }
+    }
 }
 
 /// What was written of a level.
@@ -114,6 +141,9 @@ pub struct LevelReport {
     pub level: u8,
     /// The bound in meters.
     pub bound: f64,
+    /// No vertex of the surface is further from the triangles than this, in meters: the bound, or
+    /// what was measured if that is more. Then a [`Notice::BeyondBound`] says why.
+    pub within: f64,
     /// The number of tiles.
     pub tiles: usize,
     /// The bytes of all tiles.
@@ -144,7 +174,7 @@ pub struct TerrainTilesReport {
 ///
 /// # Complexity
 /// O(n log n) for n vertices at each level, on all threads: tiles of a level at the same time.
-/// About 150 bytes for each vertex.
+/// 200 bytes for each vertex: the coarsest tiles have all of them.
 pub fn write_terrain_tiles(
     surface: &SurfaceProduct,
     options: &TerrainTilesOptions,
@@ -152,7 +182,7 @@ pub fn write_terrain_tiles(
     context: &Context,
 ) -> Result<TerrainTilesReport> {
     let journal = Journal::new(context);
-    options.rule.check()?;
+    options.check()?;
     let folder = folder.0;
     let mut pyramid = surface.with_faces(context, |faces| {
         let placing = Placing::new(faces.crs(), options, &journal)?;
@@ -166,8 +196,9 @@ pub fn write_terrain_tiles(
         placing.warn(&journal);
         Ok(pyramid)
     })?;
-    let layout = Layout::new(options, &pyramid, folder.target())?;
-    let levels = write_levels(&mut pyramid, &layout, options, &folder, &journal)?;
+    let mut layout = Layout::new(options, &pyramid, folder.target())?;
+    let (levels, deepest) = write_levels(&mut pyramid, &layout, options, &folder, &journal)?;
+    layout.measured(&pyramid, &levels, deepest);
     for (path, bytes) in layout.index(&pyramid)? {
         folder.write(&path, &bytes)?;
     }
@@ -178,20 +209,33 @@ pub fn write_terrain_tiles(
     })
 }
 
+/// Writes all tiles, and returns what was measured, and the depth of the deepest skirt.
 fn write_levels(
     pyramid: &mut Pyramid,
     layout: &Layout,
     options: &TerrainTilesOptions,
     folder: &OutputFolder,
     journal: &Journal,
-) -> Result<Vec<LevelReport>> {
+) -> Result<(Vec<LevelReport>, f64)> {
     let count: usize = pyramid.levels().iter().map(|level| level.tiles.len()).sum();
     let work = journal.start(Stage::WritingTiles, Size::Items(count as u64))?;
     let [tiles, bytes] = [(); 2].map(|()| AtomicU64::new(0));
-    let take = |level: &Level, tile: TerrainTile, _: &TileReport| {
+    let heights = pyramid.heights();
+    // Of the level above, and the depth of the deepest skirt.
+    let skirts = Mutex::new((Coarser::default(), 0.0_f64));
+    let locked = || skirts.lock().unwrap_or_else(PoisonError::into_inner);
+    // Servers send GLB as it is.
+    let is_compressed = !options.plain && options.format == TerrainFormat::QuantizedMesh;
+    let take = |level: &Level, tile: TerrainTile, report: &TileReport| {
         if let Some(path) = layout.path(tile.at) {
-            let mut written = layout.bytes(&tile, level)?;
-            if !options.plain {
+            let depth = {
+                let (coarser, deepest) = &mut *locked();
+                let depth = coarser.skirt(level, report, heights);
+                *deepest = deepest.max(depth);
+                depth
+            };
+            let mut written = layout.bytes(&tile, depth)?;
+            if is_compressed {
                 written = compressed(&written)?;
             }
             folder.write(&path, &written)?;
@@ -203,20 +247,27 @@ fn write_levels(
     let mut levels = Vec::new();
     let mut end = |level: &Level, sums: &TileReport| {
         let [tiles, bytes] = [&tiles, &bytes].map(|count| count.swap(0, Ordering::Relaxed));
+        let within = level.within(sums);
+        locked().0 = Coarser {
+            within,
+            curve: level.curve,
+            step: level.step,
+        };
         if tiles == 0 {
             return Ok(());
         }
-        if sums.beyond > 0 {
+        if within > level.bound {
             journal.add(Notice::BeyondBound {
                 level: level.level,
                 count: sums.beyond,
-                largest: sums.largest,
-                bound: level.allowance,
+                within,
+                bound: level.bound,
             });
         }
         levels.push(LevelReport {
             level: level.level,
             bound: level.bound,
+            within,
             tiles: tiles as usize,
             bytes,
             sums: *sums,
@@ -225,10 +276,11 @@ fn write_levels(
     };
     pyramid.make(&take, &mut end, journal.context.cancel)?;
     work.end()?;
-    Ok(levels)
+    let deepest = locked().1;
+    Ok((levels, deepest))
 }
 
-/// Servers and viewers expect tiles to be compressed.
+/// Servers and viewers expect quantized meshes to be compressed.
 fn compressed(bytes: &[u8]) -> Result<Vec<u8>> {
     let mut gzip = GzEncoder::new(Vec::new(), Compression::new(9));
     gzip.write_all(bytes)?;
@@ -252,18 +304,11 @@ impl Layout {
                 });
                 Ok(Layout::QuantizedMesh { tiling, name })
             }
-            TerrainFormat::Tiles3d if tiling != Tiling::Geographic => Err(Error::unsupported(
-                "3D Tiles are squares of degrees, and cannot be divided as Web Mercator is",
-            )),
             TerrainFormat::Tiles3d => {
-                let [low, high] = pyramid.heights();
-                let of_level = |at: TilePosition| {
-                    let level = &pyramid.levels()[usize::from(at.level)];
-                    TilesetRoot {
-                        at,
-                        bound: level.bound,
-                        range: [low - skirt(level) - level.bound, high + level.bound],
-                    }
+                let of_level = |at: TilePosition| TilesetRoot {
+                    at,
+                    bound: pyramid.levels()[usize::from(at.level)].bound,
+                    range: pyramid.heights(),
                 };
                 let roots = tiles_3d::roots(&tiles_of(pyramid));
                 Ok(Layout::Tiles3d {
@@ -288,10 +333,31 @@ impl Layout {
         }
     }
 
-    fn bytes(&self, tile: &TerrainTile, level: &Level) -> Result<Vec<u8>> {
+    /// Returns the file of a tile, with a skirt of this depth in meters if viewers hang none.
+    fn bytes(&self, tile: &TerrainTile, depth: f64) -> Result<Vec<u8>> {
         match self {
             Layout::QuantizedMesh { tiling, .. } => encode(tile, *tiling),
-            Layout::Tiles3d { .. } => tiles_3d::content(tile, Tiling::Geographic, skirt(level)),
+            Layout::Tiles3d { .. } => tiles_3d::content(tile, Tiling::Geographic, depth),
+        }
+    }
+
+    /// States what was measured, and how deep the lowest skirt hangs.
+    fn measured(&mut self, pyramid: &Pyramid, levels: &[LevelReport], deepest: f64) {
+        let Layout::Tiles3d { roots } = self else {
+            return;
+        };
+        let all = pyramid.levels();
+        let step = all.iter().map(|level| level.step).fold(0.0, f64::max);
+        let [low, high] = pyramid.heights();
+        for root in roots {
+            let below = levels.iter().filter(|level| level.level >= root.at.level);
+            // Viewers halve the error of the root with each level.
+            let doubled = |level: &LevelReport| {
+                level.within * f64::from(1_u32 << (level.level - root.at.level))
+            };
+            root.bound = below.map(doubled).fold(root.bound, f64::max);
+            let curve = all[usize::from(root.at.level)].curve;
+            root.range = [low - deepest - curve - step, high + step];
         }
     }
 
@@ -324,10 +390,25 @@ impl Layout {
     }
 }
 
-/// The depth of skirts: a tile of the level and one of the next coarser level are within their
-/// bounds of the surface.
-fn skirt(level: &Level) -> f64 {
-    level.bound + 2.0 * level.bound
+/// What was measured of the next coarser level, by which skirts are as deep as a gap can be.
+#[derive(Debug, Clone, Copy, Default)]
+struct Coarser {
+    /// See [`LevelReport::within`].
+    within: f64,
+    /// See [`Level::curve`].
+    curve: f64,
+    /// See [`Level::step`].
+    step: f64,
+}
+
+impl Coarser {
+    /// Returns the depth of the skirts of a tile: it and one of the coarser level are within what
+    /// was measured of the surface, and no further from each other than any heights, as far as the
+    /// earth is not curved in between.
+    fn skirt(self, level: &Level, report: &TileReport, [low, high]: [f64; 2]) -> f64 {
+        let sum = level.within(report) + self.within;
+        sum.min(high - low + level.curve + self.curve + level.step + self.step)
+    }
 }
 
 fn tiles_of(pyramid: &Pyramid) -> Vec<&[TilePosition]> {
@@ -357,9 +438,9 @@ impl Placing {
             .cure(wording!["state it with ", Setting::Crs.text("EPSG:CODE")]));
         };
         if options.vertical_offset.is_none() {
-            let is_above_ellipsoid = crs.vertical_unit.is_some() && crs.vertical_epsg.is_none();
-            if !is_above_ellipsoid {
-                journal.add(Notice::HeightsAboveEllipsoid(crs.vertical_epsg));
+            let heights = crs.heights();
+            if heights != Heights::Ellipsoid {
+                journal.add(Notice::HeightsAboveEllipsoid(heights));
             }
         }
         // Heights are converted here: to PROJ they are nothing.

@@ -27,11 +27,12 @@ use rayon::prelude::*;
 
 use self::heights::Heights;
 use self::lines::TileLines;
-use self::plan::{area, tiles_of, to_earth};
+use self::plan::{tiles_of, to_earth};
+pub(crate) use self::rule::is_height;
 pub use self::rule::{Level, PyramidRule};
 use self::tile::Outside;
 pub use self::tile::TileReport;
-use crate::data::{AT_ONCE, Bounds, Surface, TerrainTile, Tiling, corners};
+use crate::data::{AT_ONCE, Bounds, Surface, TerrainTile, Tiling, area_of, corners};
 use crate::error::{Error, Result};
 
 /// A surface that is to be written in levels of tiles.
@@ -73,7 +74,11 @@ impl Pyramid {
         surface.ensure_intact()?;
         let faces = || corners(surface).map(|(_, face)| face.map(|v| positions[v as usize]));
 
-        let area: f64 = faces().map(area).sum::<f64>() / 2.0;
+        let area: f64 = faces()
+            .map(area_of)
+            .map(f64::abs)
+            .filter(|area| area.is_finite())
+            .sum();
         let count = used.iter().filter(|&&used| used).count();
         if count == 0 || area <= 0.0 {
             return Err(Error::format("the surface has no triangles"));
@@ -93,18 +98,7 @@ impl Pyramid {
         let levels: Vec<Level> = tiles
             .into_iter()
             .zip(0..)
-            .map(|(tiles, level)| {
-                let bound = rule.bound(level, finest);
-                let (grid, above) = rule.grid(level, bound);
-                Level {
-                    level,
-                    bound,
-                    allowance: bound - above,
-                    step: 0.0,
-                    grid,
-                    tiles,
-                }
-            })
+            .map(|(tiles, level)| Level::new(rule, level, finest, tiles))
             .collect();
         let last_line = |level: &Level| level.level + level.grid.trailing_zeros() as u8;
         let finest_lines = levels.iter().map(last_line).max().unwrap_or(finest);

@@ -48,12 +48,6 @@ pub(super) fn to_earth(
     Ok(())
 }
 
-/// Twice the area of a triangle.
-pub(super) fn area([a, b, c]: [[f64; 3]; 3]) -> f64 {
-    let turn = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-    if turn.is_finite() { turn.abs() } else { 0.0 }
-}
-
 /// The tiles of each level up to the finest one that may have a part of the surface, and all of the
 /// coarsest level.
 pub(super) fn tiles_of(

@@ -1,14 +1,13 @@
 //! Which levels a pyramid has, and how near they are to the surface.
 
+use super::tile::TileReport;
+use crate::crs::SEMI_AXES;
 use crate::data::{TilePosition, Tiling};
 use crate::error::{Error, Result, Setting, wording};
 use crate::triangulation::kernel::RANGE;
 
 /// How many heights the tiles of the finest level have along a side, if nothing else is asked for.
 const HEIGHTS_ALONG: f64 = 64.0;
-
-/// The largest radius of the earth, in meters.
-const RADIUS: f64 = 6_378_137.0;
 
 /// The share of the bound that the curve of the earth may take: a triangle is flat.
 const CURVE_SHARE: f64 = 1.0 / 8.0;
@@ -38,11 +37,14 @@ pub struct PyramidRule {
 pub struct Level {
     /// 0 for the level with the largest tiles.
     pub level: u8,
-    /// No height of the surface is further from the triangles than this, in meters.
+    /// No height of the surface should be further from the triangles than this, in meters.
     pub bound: f64,
-    /// What of the bound is left for heights: the rest is what the earth is curved within a
-    /// triangle.
+    /// What of the bound is left for heights: the rest, at most half of it, is what the earth is
+    /// curved within a triangle.
     pub allowance: f64,
+    /// By how much the earth is above a triangle, at most, in meters. It may be more than the bound:
+    /// a tile of the coarsest levels has only so many squares.
+    pub curve: f64,
     /// The size of a step of height, in meters; a power of two. 0 until the level is made.
     pub step: f64,
     /// How many squares a tile has at least along each side, to follow the curve of the earth; a
@@ -76,9 +78,10 @@ impl PyramidRule {
             .cure(wording!["pass ", Setting::MaxError.number("HEIGHT")]));
         }
         match self.fill {
-            Some(fill) if !fill.is_finite() => Err(Error::usage(format!(
-                "{fill} is not a height around the surface"
-            ))),
+            Some(fill) if !is_height(fill) => Err(Error::usage(format!(
+                "{fill} is not a height around the surface: one from -20000 to 20000 m is needed"
+            ))
+            .cure(wording!["pass ", Setting::Fill.number("METERS")])),
             _ => Ok(()),
         }
     }
@@ -111,7 +114,7 @@ impl PyramidRule {
     pub(super) fn grid(&self, level: u8, bound: f64) -> (u32, f64) {
         let above = |cells: u32| {
             let diagonal = std::f64::consts::SQRT_2 * self.tiling.angle(level) / f64::from(cells);
-            RADIUS * diagonal * diagonal / 8.0
+            SEMI_AXES[0] * diagonal * diagonal / 8.0
         };
         let mut cells = 1;
         // Lines of the grid are lines between tiles of a finer level.
@@ -120,6 +123,37 @@ impl PyramidRule {
         while above(cells) > bound * CURVE_SHARE && cells < MAX_GRID && !is_finest(cells) {
             cells *= 2;
         }
-        (cells, above(cells).min(bound / 2.0))
+        (cells, above(cells))
     }
+}
+
+impl Level {
+    /// The level with a bound, of which the curve of the earth takes a part.
+    pub(super) fn new(rule: &PyramidRule, level: u8, finest: u8, tiles: Vec<TilePosition>) -> Self {
+        let bound = rule.bound(level, finest);
+        let (grid, curve) = rule.grid(level, bound);
+        Level {
+            level,
+            bound,
+            allowance: bound - curve.min(bound / 2.0),
+            curve,
+            step: 0.0,
+            grid,
+            tiles,
+        }
+    }
+
+    /// Returns how far from the triangles the surface is at most, by what was measured of tiles: the
+    /// bound, unless it does not hold.
+    pub fn within(&self, measured: &TileReport) -> f64 {
+        match measured.largest <= self.allowance && self.curve <= self.bound - self.allowance {
+            true => self.bound,
+            false => measured.largest.max(self.allowance) + self.curve,
+        }
+    }
+}
+
+/// Returns true if a number can be a height on the earth, in meters.
+pub(crate) fn is_height(meters: f64) -> bool {
+    meters.abs() <= 20_000.0
 }

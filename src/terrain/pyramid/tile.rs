@@ -134,6 +134,19 @@ fn inner(steps: f64) -> u16 {
     (steps.round() as u16).clamp(1, STEPS - 1)
 }
 
+/// Returns how often the steps of a level can be halved for a tile, so that the range of heights
+/// that it states is hardly larger than its own: viewers take it for that. Ranges remain 32-bit
+/// floats without rounding.
+fn halvings([lowest, highest]: [i32; 2]) -> u32 {
+    let [lowest, highest] = [lowest, highest].map(i64::from);
+    let all = i64::from(STEPS);
+    let fits = |halved: &u32| {
+        let exact = (lowest << halved).abs() + all < 1 << 24;
+        exact && (highest - lowest) << halved <= all
+    };
+    (1..16).take_while(fits).last().unwrap_or(0)
+}
+
 /// A position with its height in whole steps.
 fn rounded([u, v, z]: [f64; 3], step: f64) -> [f64; 3] {
     [u, v, (z / step).round() * step]
@@ -334,19 +347,21 @@ impl Work<'_> {
                 })
             })
             .collect();
-        let lowest = used.iter().map(|p| steps_of(p[2])).min().unwrap_or(0);
+        let heights = || used.iter().map(|p| steps_of(p[2]));
+        let lowest = heights().min().unwrap_or(0);
+        let halved = halvings([lowest, heights().max().unwrap_or(0)]);
         let vertices = used
             .iter()
             .map(|&[u, v, z]| {
-                let height = u16::try_from(steps_of(z) - lowest);
+                let height = u16::try_from((steps_of(z) - lowest) << halved);
                 Some([u as u16, v as u16, height.ok().filter(|&h| h <= STEPS)?])
             })
             .collect::<Option<_>>()
             .ok_or_else(|| Error::limit("the heights of a tile are too far from each other"))?;
         Ok(TerrainTile {
             at,
-            step,
-            lowest,
+            step: step / f64::from(1_u32 << halved),
+            lowest: lowest << halved,
             vertices,
             triangles,
             normals: Vec::new(),

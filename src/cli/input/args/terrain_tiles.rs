@@ -33,8 +33,8 @@ pub(crate) enum TerrainFormatArg {
 /// points, of which a TIN is built by the options below. It is written as quantized meshes with a
 /// `layer.json`, in a folder that a web server can serve as it is. Each level is simplified from
 /// the surface itself: no vertex of the surface is further from the triangles of a level than its
-/// bound, which is measured on the tiles as they are written. Tiles of a level have the same
-/// vertices on a common border.
+/// bound, which is measured on the tiles as they are written. Where it does not hold, a warning
+/// says which one does. Tiles of a level have the same vertices on a common border.
 ///
 /// Positions are transformed to longitude and latitude by PROJ, in a build that has it. Heights
 /// must be above the ellipsoid of WGS 84, see --vertical-offset.
@@ -50,7 +50,7 @@ pub(crate) struct TerrainTilesArgs {
     #[arg(short, long, required = true, value_name = "FOLDER")]
     pub(crate) output: PathBuf,
 
-    /// Replace the folder, if it is one of terrain tiles
+    /// Replace the folder, if this program has written tiles into it, and it has no other files
     #[arg(long)]
     pub(crate) overwrite: bool,
 
@@ -108,9 +108,10 @@ pub(crate) struct TerrainTilesArgs {
     )]
     pub(crate) vertical_offset: Option<f64>,
 
-    /// Do not compress tiles
+    /// Do not compress quantized meshes
     ///
-    /// Tiles are compressed by gzip, so a web server must send `Content-Encoding: gzip` with them.
+    /// They are compressed by gzip, so a web server must send `Content-Encoding: gzip` with them. 3D
+    /// Tiles are never compressed.
     #[arg(long, help_heading = "Tiles")]
     pub(crate) no_gzip: bool,
 
