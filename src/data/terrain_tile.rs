@@ -6,13 +6,13 @@ use crate::error::{Error, Result};
 /// The semi-major axis of WGS 84, in meters.
 const RADIUS: f64 = SEMI_AXES[0];
 
-/// Half the width of the world in Web Mercator, in meters.
-const MERCATOR: f64 = PI * RADIUS;
-
 /// How many samples a tile of heights has along a side by the convention for geometric errors.
 const SAMPLES: f64 = 65.0;
 
 /// The division of the earth into squares, four times as many with each level.
+///
+/// Coordinates are degrees of longitude and latitude, whatever it is: viewers take a position
+/// within a tile as linear in both, also where tiles are squares of Web Mercator.
 ///
 /// Tiles are counted from the west and from the south, as in the Tile Map Service.
 #[derive(
@@ -22,7 +22,7 @@ pub enum Tiling {
     /// Degrees of longitude and latitude on WGS 84 (EPSG:4326), from two tiles.
     #[default]
     Geographic,
-    /// Web Mercator (EPSG:3857), from one tile.
+    /// Squares of Web Mercator (EPSG:3857), from one tile, up to 85 degrees of latitude.
     WebMercator,
 }
 
@@ -46,7 +46,10 @@ impl Tiling {
     /// The finest level of any tiling: a few centimeters.
     pub const MAX_LEVEL: u8 = 28;
 
-    /// Returns the EPSG code of the coordinates.
+    /// The EPSG code of the coordinates.
+    pub const COORDINATES: u32 = 4326;
+
+    /// Returns the EPSG code of the system in which tiles are squares.
     pub fn epsg(self) -> u32 {
         match self {
             Tiling::Geographic => 4326,
@@ -64,23 +67,6 @@ impl Tiling {
         }
     }
 
-    /// Returns the smallest x, or the smallest y, of all tiles.
-    fn origin(self, axis: usize) -> f64 {
-        match self {
-            Tiling::Geographic => [-180.0, -90.0][axis],
-            Tiling::WebMercator => -MERCATOR,
-        }
-    }
-
-    /// Returns the side of a tile, in the units of the coordinates.
-    pub fn side(self, level: u8) -> f64 {
-        let whole = match self {
-            Tiling::Geographic => 180.0,
-            Tiling::WebMercator => 2.0 * MERCATOR,
-        };
-        whole / f64::from(rows(level))
-    }
-
     /// Returns the angle that a tile spans at the equator, in radians.
     pub fn angle(self, level: u8) -> f64 {
         let whole = match self {
@@ -90,18 +76,41 @@ impl Tiling {
         whole / f64::from(rows(level))
     }
 
-    /// Returns the x (axis 0) or y (axis 1) of a line between tiles, the first of which is 0: the
-    /// same number at each level that has the line.
+    /// Returns the longitude (axis 0) or the latitude (axis 1) of a line between tiles, the first of
+    /// which is 0: the same number at each level that has the line.
     pub fn line(self, axis: usize, level: u8, number: u32) -> f64 {
-        f64::from(number) * self.side(level) + self.origin(axis)
+        let along = f64::from(number) / f64::from(rows(level));
+        match (self, axis) {
+            (Tiling::Geographic, _) => along * 180.0 + [-180.0, -90.0][axis],
+            (Tiling::WebMercator, 0) => along * 360.0 - 180.0,
+            (Tiling::WebMercator, _) => (PI * (2.0 * along - 1.0)).sinh().atan().to_degrees(),
+        }
     }
 
-    /// Returns a coordinate in sides of a tile from the first line.
+    /// Returns a longitude or a latitude in sides of a tile from the first line.
     pub fn in_sides(self, axis: usize, level: u8, value: f64) -> f64 {
-        (value - self.origin(axis)) / self.side(level)
+        let along = match (self, axis) {
+            (Tiling::Geographic, _) => (value - [-180.0, -90.0][axis]) / 180.0,
+            (Tiling::WebMercator, 0) => (value + 180.0) / 360.0,
+            (Tiling::WebMercator, _) => (value.to_radians().tan().asinh() / PI + 1.0) / 2.0,
+        };
+        along * f64::from(rows(level))
     }
 
-    /// Returns the smallest x and y of a tile, and its largest.
+    /// Returns how far along the side of a tile a line of a grid is, from 0 to 1, if the grid has
+    /// `cells` squares along the side: a power of two.
+    ///
+    /// In Web Mercator, squares of a tile have different heights in degrees of latitude.
+    pub fn along_side(self, axis: usize, at: TilePosition, cells: u32, number: u32) -> f64 {
+        if (self, axis) != (Tiling::WebMercator, 1) {
+            return f64::from(number) / f64::from(cells);
+        }
+        let finer = at.level + cells.trailing_zeros() as u8;
+        let [[_, south], [_, north]] = self.bounds(at);
+        (self.line(axis, finer, at.row * cells + number) - south) / (north - south)
+    }
+
+    /// Returns the smallest longitude and latitude of a tile, and its largest.
     pub fn bounds(self, at: TilePosition) -> [[f64; 2]; 2] {
         let corner = |more: u32| {
             [
@@ -118,21 +127,10 @@ impl Tiling {
         self.angle(level) * RADIUS / SAMPLES / 4.0
     }
 
-    /// Returns the meters in a unit of x and of y at a latitude in degrees, on a sphere.
-    pub fn meters_per_unit(self, latitude: f64) -> [f64; 2] {
+    /// Returns the meters in a degree of longitude and of latitude at a latitude, on a sphere.
+    pub fn meters_per_degree(latitude: f64) -> [f64; 2] {
         let cos = latitude.to_radians().cos();
-        match self {
-            Tiling::Geographic => [cos, 1.0].map(|share| share * RADIUS * PI / 180.0),
-            Tiling::WebMercator => [cos; 2],
-        }
-    }
-
-    /// Returns longitude and latitude of a position, in degrees.
-    pub fn degrees(self, [x, y]: [f64; 2]) -> [f64; 2] {
-        match self {
-            Tiling::Geographic => [x, y],
-            Tiling::WebMercator => [x / RADIUS, (y / RADIUS).sinh().atan()].map(f64::to_degrees),
-        }
+        [cos, 1.0].map(|share| share * RADIUS * PI / 180.0)
     }
 }
 
@@ -188,7 +186,7 @@ impl TerrainTile {
         }
     }
 
-    /// Returns x and y in the coordinates of a tiling, and the height in meters.
+    /// Returns longitude and latitude in degrees, and the height in meters.
     pub fn position(&self, tiling: Tiling, [u, v, steps]: [u16; 3]) -> [f64; 3] {
         let [min, max] = tiling.bounds(self.at);
         let along = |axis: usize, steps: u16| {
@@ -196,5 +194,57 @@ impl TerrainTile {
             min[axis] + t * (max[axis] - min[axis])
         };
         [along(0, u), along(1, v), self.height(steps)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Latitudes of EPSG:3857, by its formula for the other direction.
+    #[test]
+    fn lines_of_mercator_are_equally_far_apart_on_its_map() {
+        let tiling = Tiling::WebMercator;
+        for level in [0, 1, 5, 12] {
+            let rows = tiling.size(level)[1];
+            for number in (0..=rows).step_by(1 + rows as usize / 40) {
+                let latitude = tiling.line(1, level, number).to_radians();
+                let y = (PI / 4.0 + latitude / 2.0).tan().ln();
+                let expected = PI * (2.0 * f64::from(number) / f64::from(rows) - 1.0);
+                assert!((y - expected).abs() < 1e-12, "{level} {number} {y}");
+                let back = tiling.in_sides(1, level, latitude.to_degrees());
+                assert!((back - f64::from(number)).abs() < 1e-9 * f64::from(rows));
+                assert_eq!(
+                    tiling.line(1, level, number),
+                    tiling.line(1, level + 1, 2 * number)
+                );
+            }
+        }
+        assert!((tiling.line(1, 0, 1) - 85.051_128_779_806_6).abs() < 1e-9);
+        assert_eq!(tiling.line(0, 1, 1), 0.0);
+    }
+
+    /// A vertex is linear between the latitudes of the edges of its tile, as in the specification.
+    #[test]
+    fn positions_within_a_tile_are_linear_in_degrees() {
+        let tile = TerrainTile {
+            at: TilePosition {
+                level: 1,
+                column: 1,
+                row: 1,
+            },
+            step: 1.0,
+            lowest: 0,
+            vertices: Vec::new(),
+            triangles: Vec::new(),
+            normals: Vec::new(),
+        };
+        let north = Tiling::WebMercator.line(1, 1, 2);
+        let [x, y, z] = tile.position(Tiling::WebMercator, [16_383, 16_383, 7]);
+        let share = 16_383.0 / 32_767.0;
+        assert!((x - 180.0 * share).abs() < 1e-9 && (y - north * share).abs() < 1e-9);
+        assert_eq!(z, 7.0);
+        let half = Tiling::WebMercator.along_side(1, tile.at, 2, 1);
+        assert!((half * north - 66.513_260_443_111_9).abs() < 1e-9, "{half}");
     }
 }

@@ -122,6 +122,8 @@ fn a_folder_is_replaced_only_if_asked_for() {
     assert!(names.contains(&"tileset.json".to_owned()), "{names:?}");
     assert!(names.contains(&"content/0/0/0.glb".to_owned()), "{names:?}");
     assert!(!names.contains(&"layer.json".to_owned()), "{names:?}");
+    let glb = std::fs::read(tiles.join("content/0/0/0.glb")).unwrap();
+    assert!(glb.starts_with(b"glTF"));
     let at = |target| [RIDGE[..5].to_vec(), vec![target, "--overwrite"]].concat();
     // A file of somebody else, in a folder of tiles: before anything is read.
     std::fs::write(tiles.join("index.html"), "mine").unwrap();
@@ -142,13 +144,81 @@ fn where_a_surface_is_must_be_known() {
     let folder = folder_with(&[("ridge.xyz", &ridge())]);
     let nowhere = ["terrain-tiles", "ridge.xyz", "-o", "tiles"];
     run_in(&folder, &nowhere).fails(2, &["coordinate system", "--a-srs EPSG:CODE"]);
-    let far = [RIDGE, &["--tiling", "mercator", "--format", "3dtiles"]].concat();
-    if cfg!(not(feature = "proj")) {
-        run_in(&folder, &far).fails(1, &["needs PROJ"]);
+    let squares = [RIDGE, &["--tiling", "mercator", "--format", "3dtiles"]].concat();
+    run_in(&folder, &squares).fails(1, &["3D Tiles are squares of degrees"]);
+    for offset in ["1e9", "nan", "-20001"] {
+        let option = format!("--vertical-offset={offset}");
+        let far = [RIDGE, &[&option]].concat();
+        run_in(&folder, &far).fails(2, &["--vertical-offset METERS"]);
     }
+    let deep = [RIDGE, &["--fill", "-12000000"]].concat();
+    run_in(&folder, &deep).fails(2, &["--fill METERS"]);
     let level = [RIDGE, &["--max-level", "29"]].concat();
     run_in(&folder, &level).fails(2, &["there is no level 29", "--max-level"]);
     assert!(!folder.path().join("tiles").exists());
+}
+
+/// Vertices are linear in latitude between the edges of their tile, and heights are those of a
+/// slope there, which rises to the north.
+#[test]
+fn tiles_of_mercator_are_read_in_degrees() {
+    let mut slope = String::new();
+    for i in 0..21 {
+        for j in 0..21 {
+            let (x, y) = (7.0 + f64::from(i) * 0.05, 46.0 + f64::from(j) * 0.05);
+            slope += &format!("{x:.2} {y:.2} {}\n", 100.0 * (y - 46.0));
+        }
+    }
+    let folder = folder_with(&[("ridge.xyz", &slope)]);
+    let how = [
+        "--tiling",
+        "mercator",
+        "--max-level",
+        "8",
+        "--max-error",
+        "2",
+        "--fill",
+        "0",
+    ];
+    let words = [
+        RIDGE,
+        &how,
+        &["--vertical-offset", "0", "--max-edge", "none"],
+    ]
+    .concat();
+    run_in(&folder, &words).works(&["level 8"]);
+    let tiles = folder.path().join("tiles");
+    let layer: Value =
+        serde_json::from_slice(&std::fs::read(tiles.join("layer.json")).unwrap()).unwrap();
+    assert_eq!(layer["projection"], "EPSG:3857");
+    let bounds: Vec<f64> = serde_json::from_value(layer["bounds"].clone()).unwrap();
+    assert!(
+        bounds
+            .iter()
+            .zip([7.0, 46.0, 8.0, 47.0])
+            .all(|(a, b)| (a - b).abs() < 1e-9)
+    );
+    let mut judged = 0;
+    for name in files(&tiles).iter().filter(|name| name.starts_with("8/")) {
+        let numbers: Vec<&str> = name.trim_end_matches(".terrain").split('/').collect();
+        let [column, row] = [1, 2].map(|k| numbers[k].parse::<f64>().unwrap());
+        let latitude = |row: f64| {
+            let y = std::f64::consts::PI * (2.0 * row / 256.0 - 1.0);
+            (2.0 * y.exp().atan() - std::f64::consts::FRAC_PI_2).to_degrees()
+        };
+        let [south, north] = [row, row + 1.0].map(latitude);
+        let tile = tile(&tiles.join(name));
+        for (number, [u, v, _]) in (0..).zip(&tile.vertices) {
+            let x = (column + f64::from(*u) / 32_767.0) * 360.0 / 256.0 - 180.0;
+            let y = south + f64::from(*v) / 32_767.0 * (north - south);
+            if (7.0..=8.0).contains(&x) && (46.0..=47.0).contains(&y) {
+                let off = (tile.height(number) - 100.0 * (y - 46.0)).abs();
+                assert!(off < 0.1, "{name} {x} {y} {off}");
+                judged += 1;
+            }
+        }
+    }
+    assert!(judged > 2, "{judged}");
 }
 
 #[test]

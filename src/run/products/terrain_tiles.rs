@@ -368,7 +368,7 @@ impl Layout {
             Layout::QuantizedMesh { tiling, name } => {
                 let layer = LayerOptions {
                     name: name.clone(),
-                    bounds: pyramid.bounds().map(|corner| tiling.degrees(corner)),
+                    bounds: pyramid.bounds(),
                     extensions: vec!["octvertexnormals"],
                 };
                 let text = layer_json(*tiling, &all, &layer);
@@ -449,7 +449,7 @@ impl Placing {
             vertical_unit: None,
             ..crs.clone()
         };
-        let system = Crs::from_epsg(options.rule.tiling.epsg())?;
+        let system = Crs::from_epsg(Tiling::COORDINATES)?;
         let transform = match plan.is_same(&system) {
             true => None,
             false => {

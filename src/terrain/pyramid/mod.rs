@@ -74,9 +74,13 @@ impl Pyramid {
         surface.ensure_intact()?;
         let faces = || corners(surface).map(|(_, face)| face.map(|v| positions[v as usize]));
 
+        // In tiles of the coarsest level.
+        let in_tiles = |[x, y, z]: [f64; 3]| {
+            let [x, y] = [(x, 0), (y, 1)].map(|(c, axis)| rule.tiling.in_sides(axis, 0, c));
+            [x, y, z]
+        };
         let area: f64 = faces()
-            .map(area_of)
-            .map(f64::abs)
+            .map(|face| area_of(face.map(in_tiles)).abs())
             .filter(|area| area.is_finite())
             .sum();
         let count = used.iter().filter(|&&used| used).count();
@@ -84,7 +88,7 @@ impl Pyramid {
             return Err(Error::format("the surface has no triangles"));
         }
         let in_tile = |level: u8| {
-            let side = rule.tiling.side(level);
+            let side = 1.0 / f64::from(1_u32 << level);
             count as f64 / area.max(f64::MIN_POSITIVE) * side * side
         };
         let finest = rule.finest(in_tile);
@@ -127,8 +131,7 @@ impl Pyramid {
         self.heights.tiling
     }
 
-    /// Returns the smallest x and y of the surface in the coordinates of the tiling, and the
-    /// largest.
+    /// Returns the smallest longitude and latitude of the surface, and the largest.
     pub fn bounds(&self) -> [[f64; 2]; 2] {
         let bounds = Bounds::around(self.heights.points());
         [bounds.min, bounds.max].map(|[x, y, _]| [x, y])

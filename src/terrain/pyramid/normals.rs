@@ -10,11 +10,7 @@ use crate::data::{TerrainTile, Tiling, unit, vertex_normals};
 
 /// Returns the normal of each vertex of a tile, from the center of the earth.
 pub(super) fn normals(tile: &TerrainTile, tiling: Tiling, rises: &Rises) -> Vec<[f64; 3]> {
-    let degrees = |steps: [u16; 3]| {
-        let [x, y, z] = tile.position(tiling, steps);
-        let [longitude, latitude] = tiling.degrees([x, y]);
-        [longitude, latitude, z]
-    };
+    let degrees = |steps: [u16; 3]| tile.position(tiling, steps);
     let on_earth: Vec<[f64; 3]> = tile.vertices.iter().map(|&v| degrees(v)).collect();
     let positions: Vec<[f64; 3]> = on_earth.iter().map(|&p| geocentric(p)).collect();
     let faces = tile.triangles.iter();
@@ -28,7 +24,7 @@ pub(super) fn normals(tile: &TerrainTile, tiling: Tiling, rises: &Rises) -> Vec<
         let Some(rise) = rises.get(&[u, v]) else {
             continue;
         };
-        let meters = tiling.meters_per_unit(latitude);
+        let meters = Tiling::meters_per_degree(latitude);
         let slope = [0, 1].map(|k| rise[k] / meters[k]);
         // At a pole, a unit along x has no length.
         let is_known = slope.iter().all(|slope| slope.is_finite());

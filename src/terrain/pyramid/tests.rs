@@ -114,10 +114,18 @@ fn rules() -> [PyramidRule; 3] {
     ]
 }
 
+/// Tiles whose steps along y are not those of the map that divides the earth.
+const MERCATOR: PyramidRule = PyramidRule {
+    tiling: Tiling::WebMercator,
+    finest: Some(12),
+    max_error: Some(0.5),
+    fill: None,
+};
+
 #[test]
 fn borders_of_a_level_are_equal_to_the_bit() {
     let mut compared = 0;
-    for (seed, rule) in (0..).zip(rules()) {
+    for (seed, rule) in (0..).zip(rules().into_iter().chain([MERCATOR])) {
         for on_lines in [false, true] {
             let surface = surface(seed, 900, on_lines);
             let mut pyramid = pyramid(&surface, &rule);
@@ -214,7 +222,7 @@ fn height_of(tile: &TerrainTile, at: [f64; 2]) -> Option<f64> {
 
 #[test]
 fn the_bound_holds_at_each_height_of_each_level() {
-    for rule in rules() {
+    for rule in rules().into_iter().chain([MERCATOR]) {
         let surface = surface(5, 700, false);
         let mut pyramid = pyramid(&surface, &rule);
         let levels_of_tiles = collect(&mut pyramid);
@@ -225,7 +233,7 @@ fn the_bound_holds_at_each_height_of_each_level() {
             let mut judged = 0;
             for (tile, report) in tiles {
                 assert_eq!(report.beyond, 0, "{:?} {report:?}", tile.at);
-                let [min, max] = Tiling::Geographic.bounds(tile.at);
+                let [min, max] = rule.tiling.bounds(tile.at);
                 for &[x, y, z] in &points {
                     if x < min[0] || x > max[0] || y < min[1] || y > max[1] {
                         continue;
@@ -328,6 +336,46 @@ fn a_border_depends_on_its_heights_alone_and_is_near_to_all() {
             let height = 0.25 * (f64::from(from) + along * f64::from(to - from));
             assert!((height - z).abs() <= bound + 1e-9);
         }
+    }
+}
+
+/// What is stated holds, also if more is asked for than tiles of a level can have.
+#[test]
+fn the_curve_of_the_earth_is_stated() {
+    let fine = PyramidRule {
+        finest: Some(3),
+        max_error: Some(0.1),
+        ..PyramidRule::default()
+    };
+    let pyramid = pyramid(&surface(3, 50, false), &fine);
+    for level in pyramid.levels() {
+        let angle =
+            std::f64::consts::SQRT_2 * std::f64::consts::PI / f64::from(level.grid << level.level);
+        let above = 6_378_137.0 * (1.0 - (angle / 2.0).cos());
+        assert!(level.curve > 0.99 * above, "{} {above}", level.curve);
+        let within = level.within(&TileReport::default());
+        assert!(
+            within >= level.bound.max(level.allowance + 0.99 * above),
+            "{level:?}"
+        );
+    }
+    assert!(pyramid.levels()[0].curve > pyramid.levels()[0].bound);
+}
+
+/// The range that a tile states is not much larger than that of its heights.
+#[test]
+fn the_range_of_a_tile_is_its_own() {
+    let mut pyramid = pyramid(&surface(6, 700, false), &rules()[1]);
+    for (tile, _) in collect(&mut pyramid).iter().flatten() {
+        let heights = tile.vertices.iter().map(|v| tile.height(v[2]));
+        let highest = heights.fold(f64::NEG_INFINITY, f64::max);
+        let [low, high] = tile.range();
+        assert!(
+            high - low < (2.0 * (highest - low)).max(32.0),
+            "{:?}",
+            tile.at
+        );
+        assert!([low, high].iter().all(|&z| f64::from(z as f32) == z));
     }
 }
 

@@ -157,7 +157,9 @@ impl Frame {
     fn of(all: &Heights, level: &Level, at: TilePosition) -> Self {
         let cells = level.grid;
         let height = |i: u32, j: u32| (all.height(level, at, [i, j]) / level.step).round() as i32;
-        let steps = |i: u32| (f64::from(STEPS) * f64::from(i) / f64::from(cells)).round() as u16;
+        let steps = |axis: usize, i: u32| {
+            (f64::from(STEPS) * all.tiling.along_side(axis, at, cells, i)).round() as u16
+        };
         let mut frame = Frame {
             vertices: Vec::new(),
             rises: Rises::default(),
@@ -177,7 +179,7 @@ impl Frame {
                     }
                 };
                 let fixed: Chain = (0..=cells)
-                    .map(|k| (steps(k), height(corner(k)[0], corner(k)[1])))
+                    .map(|k| (steps(1 - axis, k), height(corner(k)[0], corner(k)[1])))
                     .collect();
                 let (crossings, ends) = all.along(at, axis, far);
                 let crossings = in_steps(crossings, ends);
@@ -193,12 +195,12 @@ impl Frame {
                 // Other borders meet there: what all of them know is the surface in this point.
                 for k in 0..=cells {
                     let rise = all.rise(level, at, corner(k));
-                    frame.rises.insert(position(steps(k)), rise);
+                    frame.rises.insert(position(steps(1 - axis, k)), rise);
                 }
             }
         }
         for i in 1..cells {
-            let column = (1..cells).map(|j| ([steps(i), steps(j)], height(i, j)));
+            let column = (1..cells).map(|j| ([steps(0, i), steps(1, j)], height(i, j)));
             frame.vertices.extend(column);
         }
         frame
@@ -265,7 +267,8 @@ impl Work<'_> {
     fn outside(&self, all: &Heights, finer: &Level, tile: &TerrainTile) -> Outside {
         let cells = 2 * finer.grid;
         let lines = tile.at.level + cells.trailing_zeros() as u8;
-        let steps = |k: u32| f64::from(STEPS) * f64::from(k) / f64::from(cells);
+        let steps =
+            |axis: usize, k: u32| f64::from(STEPS) * all.tiling.along_side(axis, tile.at, cells, k);
         let side = |axis: usize, at: u16| -> Vec<[f64; 2]> {
             let on_side = tile.vertices.iter().filter(|v| v[axis] == at);
             let mut side: Vec<[f64; 2]> = on_side
@@ -289,10 +292,10 @@ impl Work<'_> {
                 let height = match on_side {
                     // The same number in both tiles at the side.
                     Some((axis, k, along)) => {
-                        height_along(&sides[usize::from(k > 0)][axis], steps(along))
+                        height_along(&sides[usize::from(k > 0)][axis], steps(1 - axis, along))
                     }
                     None => {
-                        let q = [steps(i), steps(j)];
+                        let q = [steps(0, i), steps(1, j)];
                         let location = self.triangulation.locate(&[q[0], q[1], 0.0], near);
                         near = location.cell(&self.triangulation).or(near);
                         self.height_at(location, q).map_or(all.fill, |(z, _)| z)

@@ -15,7 +15,8 @@ pub(crate) fn along_curve(positions: &[[f64; 2]]) -> Vec<u32> {
         |k: usize| f64::from(u16::MAX) / (extent.max[k] - extent.min[k]).max(f64::MIN_POSITIVE);
     let (scales, low) = ([scale(0), scale(1)], extent.min);
     // What is not finite comes out as some number, and is found to be outside.
-    let step = |q: &[f64; 2], k: usize| spread(((q[k] - low[k]) * scales[k]) as u16);
+    let step =
+        |q: &[f64; 2], k: usize| spread(u32::from(((q[k] - low[k]) * scales[k]) as u16)) as u32;
     let mut keys: Vec<(u32, u32)> = (0..)
         .zip(positions)
         .map(|(i, q)| (step(q, 0) | step(q, 1) << 1, i))
@@ -25,13 +26,14 @@ pub(crate) fn along_curve(positions: &[[f64; 2]]) -> Vec<u32> {
 }
 
 /// Moves each bit of a number to twice its position.
-fn spread(number: u16) -> u32 {
-    let mut bits = u32::from(number);
+pub(crate) fn spread(number: u32) -> u64 {
+    let mut bits = u64::from(number);
     for (shift, mask) in [
-        (8, 0x00FF_00FF),
-        (4, 0x0F0F_0F0F),
-        (2, 0x3333_3333),
-        (1, 0x5555_5555),
+        (16, 0x0000_FFFF_0000_FFFF),
+        (8, 0x00FF_00FF_00FF_00FF),
+        (4, 0x0F0F_0F0F_0F0F_0F0F),
+        (2, 0x3333_3333_3333_3333),
+        (1, 0x5555_5555_5555_5555),
     ] {
         bits = (bits | bits << shift) & mask;
     }

@@ -25,11 +25,7 @@ pub(super) struct Header {
 
 impl Header {
     pub(super) fn of(tile: &TerrainTile, tiling: Tiling) -> Self {
-        let on_earth = |steps: [u16; 3]| {
-            let [x, y, z] = tile.position(tiling, steps);
-            let [longitude, latitude] = tiling.degrees([x, y]);
-            geocentric([longitude, latitude, z])
-        };
+        let on_earth = |steps: [u16; 3]| geocentric(tile.position(tiling, steps));
         let positions: Vec<[f64; 3]> = tile.vertices.iter().map(|&steps| on_earth(steps)).collect();
         let mut bounds = crate::data::Bounds::default();
         positions.iter().for_each(|&p| bounds.add(p));

@@ -91,8 +91,7 @@ pub fn content(tile: &TerrainTile, tiling: Tiling, depth: f64) -> Result<Vec<u8>
 impl Shape {
     fn of(tile: &TerrainTile, tiling: Tiling, depth: f64) -> Self {
         let on_earth = |steps: [u16; 3], below: f64| {
-            let [x, y, z] = tile.position(tiling, steps);
-            let [longitude, latitude] = tiling.degrees([x, y]);
+            let [longitude, latitude, z] = tile.position(tiling, steps);
             geocentric([longitude, latitude, z - below])
         };
         let mut shape = Shape {
