@@ -12,8 +12,8 @@ use crate::requests;
 use crate::surface::Surface;
 use crate::work::{self, Call};
 
-/// A level in Python: its number, its bound, the one that holds and the largest distance, and the numbers of tiles,
-/// bytes, vertices, triangles, heights, and heights beyond the bound.
+/// A level in Python: its number, its bound, the one that holds and the largest distance, and the
+/// numbers of tiles, bytes, vertices, triangles, heights, and heights beyond the bound.
 type Level = (u8, [f64; 3], [u64; 6]);
 
 /// The options: format, tiling, bound, finest level, height around the surface, what is added to

@@ -76,8 +76,8 @@ impl Tiling {
         whole / f64::from(rows(level))
     }
 
-    /// Returns the longitude (axis 0) or the latitude (axis 1) of a line between tiles, the first of
-    /// which is 0: the same number at each level that has the line.
+    /// Returns the longitude (axis 0) or the latitude (axis 1) of a line between tiles, the first
+    /// of which is 0: the same number at each level that has the line.
     pub fn line(self, axis: usize, level: u8, number: u32) -> f64 {
         let along = f64::from(number) / f64::from(rows(level));
         match (self, axis) {

@@ -148,7 +148,8 @@ pub use products::surface::{
     write_mesh,
 };
 pub use products::terrain_tiles::{
-    LevelReport, TerrainFolder, TerrainFormat, TerrainTilesOptions, TerrainTilesReport, write_terrain_tiles,
+    LevelReport, TerrainFolder, TerrainFormat, TerrainTilesOptions, TerrainTilesReport,
+    write_terrain_tiles,
 };
 pub use products::tin::{BuildReport, ReplacedPoints, TinRequest};
 pub use products::volume::{

@@ -210,8 +210,8 @@ pub enum Notice {
     },
     /// Vertices were added on ridges and valleys; with their number.
     RidgesAdded(usize),
-    /// Heights are used as if they were above the ellipsoid; with what they are counted from, as far
-    /// as that is stated.
+    /// Heights are used as if they were above the ellipsoid; with what they are counted from, as
+    /// far as that is stated.
     HeightsAboveEllipsoid(Heights),
     /// The surface is further from the triangles of a level of tiles than its bound.
     BeyondBound {

@@ -121,13 +121,10 @@ impl TerrainTilesOptions {
         }
         match self.vertical_offset {
             Some(offset) if !is_height(offset) => Err(Error::usage(format!(
-                "{offset} is not a height of the geoid above the ellipsoid: one from -20000 to 20000 \
-                 m is needed"
+                "{offset} is not a height of the geoid above the ellipsoid: one from -20000 to \
+                 20000 m is needed"
             ))
-            .cure(wording![
-                "pass ",
-                Setting::VerticalOffset.number("METERS")
-            ])),
+            .cure(wording!["pass ", Setting::VerticalOffset.number("METERS")])),
             _ => Ok(()),
         }
     }

@@ -42,8 +42,8 @@ pub struct Level {
     /// What of the bound is left for heights: the rest, at most half of it, is what the earth is
     /// curved within a triangle.
     pub allowance: f64,
-    /// By how much the earth is above a triangle, at most, in meters. It may be more than the bound:
-    /// a tile of the coarsest levels has only so many squares.
+    /// By how much the earth is above a triangle, at most, in meters. It may be more than the
+    /// bound: a tile of the coarsest levels has only so many squares.
     pub curve: f64,
     /// The size of a step of height, in meters; a power of two. 0 until the level is made.
     pub step: f64,
@@ -143,8 +143,8 @@ impl Level {
         }
     }
 
-    /// Returns how far from the triangles the surface is at most, by what was measured of tiles: the
-    /// bound, unless it does not hold.
+    /// Returns how far from the triangles the surface is at most, by what was measured of tiles:
+    /// the bound, unless it does not hold.
     pub fn within(&self, measured: &TileReport) -> f64 {
         match measured.largest <= self.allowance && self.curve <= self.bound - self.allowance {
             true => self.bound,

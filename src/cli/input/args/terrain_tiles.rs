@@ -110,8 +110,8 @@ pub(crate) struct TerrainTilesArgs {
 
     /// Do not compress quantized meshes
     ///
-    /// They are compressed by gzip, so a web server must send `Content-Encoding: gzip` with them. 3D
-    /// Tiles are never compressed.
+    /// They are compressed by gzip, so a web server must send `Content-Encoding: gzip` with them.
+    /// 3D Tiles are never compressed.
     #[arg(long, help_heading = "Tiles")]
     pub(crate) no_gzip: bool,
 

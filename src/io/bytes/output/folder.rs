@@ -39,8 +39,8 @@ impl OutputFolder {
         Self::begin(target, kind, false)
     }
 
-    /// Creates a hidden folder next to `target`. A folder that exists there is replaced if it is one
-    /// of the kind, and has no other files.
+    /// Creates a hidden folder next to `target`. A folder that exists there is replaced if it is
+    /// one of the kind, and has no other files.
     ///
     /// # Errors
     /// If there is something else, or the folder around it cannot be written to.
