@@ -157,6 +157,52 @@ fn some_formats_take_labels_with_the_lines() {
     run_in(&folder, &words("m.shp", "m.shp")).fails(2, &["the output is named twice"]);
 }
 
+/// Returns the value behind a code, from a position on.
+fn value_of(pairs: &[&str], from: usize, code: &str) -> f64 {
+    let mut behind = pairs[from..].chunks_exact(2);
+    let pair = behind.find(|pair| pair[0].trim() == code).unwrap();
+    pair[1].parse().unwrap()
+}
+
+#[test]
+fn drawings_have_heights_and_take_labels_alone_but_no_areas() {
+    let folder = folder_with(&[("hills.xyz", &hills())]);
+    let words = ["contour", "hills.xyz", "--preset", "cartographic", "--2d"];
+    let make = |more: &[&str]| run_in(&folder, &[&words[..], more].concat());
+    make(&["-o", "both.dxf", "--labels-output", "both.dxf"]).works(&["written     both.dxf"]);
+    make(&["-o", "m.geojson", "--labels-output", "l.dxf"]).works(&["written     l.dxf"]);
+    make(&["-o", "n.geojson", "--labels-output", "l.geojson"]).works(&[]);
+    let count = features(&bytes(&folder, "l.geojson")).len();
+    assert!(count > 0);
+    for (name, has_lines) in [("both.dxf", true), ("l.dxf", false)] {
+        let drawing = String::from_utf8(bytes(&folder, name)).unwrap();
+        let pairs: Vec<&str> = drawing.lines().collect();
+        let starts_of = |of: [&str; 2]| -> Vec<usize> {
+            let is_start = |&at: &usize| pairs.get(at..at + 2) == Some(&of[..]);
+            (0..pairs.len()).step_by(2).filter(is_start).collect()
+        };
+        let texts = starts_of(["0", "TEXT"]);
+        assert_eq!(texts.len(), count, "{name}");
+        assert_eq!(!starts_of(["0", "POLYLINE"]).is_empty(), has_lines);
+        for at in texts {
+            assert_eq!(value_of(&pairs, at, "30"), value_of(&pairs, at, "1"));
+        }
+        let [low, high] = ["$EXTMIN", "$EXTMAX"].map(|corner| starts_of(["9", corner])[0]);
+        for code in ["10", "20"] {
+            let [low, high] = [low, high].map(|at| value_of(&pairs, at, code));
+            assert!(0.0 <= low && low < high && high <= 118.0, "{name}");
+        }
+        assert!(value_of(&pairs, low, "30") <= value_of(&pairs, high, "30"));
+        assert!(!drawing.to_lowercase().contains("nan"), "{name}");
+    }
+    let refused = [
+        "both.dxf: a DXF drawing has no areas",
+        "write the areas as .gpkg",
+    ];
+    make(&["--bands", "-o", "b.shp", "-o", "both.dxf", "--overwrite"]).fails(2, &refused);
+    assert!(!folder.path().join("b.shp").exists());
+}
+
 #[test]
 fn lines_in_the_plane_have_no_heights() {
     let folder = folder_with(&[("hills.xyz", &hills())]);

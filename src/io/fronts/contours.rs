@@ -8,7 +8,7 @@ use crate::data::ContourLine;
 use crate::error::{Error, Result};
 use crate::io::bytes::output::Destination;
 pub use crate::io::codec::contour_summary::ContourSummary;
-use crate::io::formats::{self, Product, Writers};
+use crate::io::formats::{self, Holding, Product, Writers};
 pub(crate) use crate::io::options::map_sheet::MapSheet;
 
 /// Returns an error if lines with `vertices` vertices in total are too large for the format of
@@ -31,15 +31,37 @@ pub(crate) fn takes_labels(path: &Path) -> bool {
     formats::of_name(path).is_some_and(|format| format.writers.map.is_some())
 }
 
+/// Returns an error unless the format that the extension of `target` names takes polygons.
+///
+/// # Errors
+/// Names the file, and formats that do.
+pub(crate) fn require_areas<'a>(target: impl Into<Destination<'a>>) -> Result<()> {
+    let target = target.into();
+    match formats::of_name(&target.format_path()) {
+        Some(format) if !format.can_hold(Holding::Polygons) => {
+            let error = format!("{} has no areas, only their outlines", format.noun);
+            Err(Error::usage(error)
+                .in_file(target.path())
+                .cure("write the areas as .gpkg, .shp or .geojson"))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// Writes contours of a map in the format that the extension of `target` names, and returns
-/// warnings. Labels are left out unless the format [takes them](takes_labels).
+/// warnings. Labels beside contours are left out unless the format [takes both](takes_labels).
 ///
 /// # Errors
 /// Those of [`layer::write_lines`].
 pub(crate) fn write_map(target: Destination, sheet: &MapSheet) -> Result<Vec<String>> {
-    match formats::of_name(&target.format_path()).and_then(|format| format.writers.map) {
-        Some(write) => write(target, sheet),
-        None => layer::write_lines(target, sheet.shapes),
+    let format = formats::of_name(&target.format_path());
+    match (
+        format.and_then(|format| format.writers.map),
+        sheet.shapes.or(sheet.labels),
+    ) {
+        (Some(write), _) => write(target, sheet),
+        (None, Some(layer)) => layer::write_lines(target, layer),
+        (None, None) => Ok(Vec::new()),
     }
 }
 

@@ -265,7 +265,7 @@ impl ContourMap {
     /// # Errors
     /// If the format cannot be written, has no room for them, or the file cannot be written.
     pub fn write(&self, target: Destination, context: &Context) -> Result<()> {
-        self.write_sheet(None, target, context)
+        self.write_shapes(None, target, context)
     }
 
     /// Like [`write`](Self::write), with the labels in the same file: GeoPackage has a second layer
@@ -274,21 +274,34 @@ impl ContourMap {
     /// # Errors
     /// Those of [`write`](Self::write).
     pub fn write_with_labels(&self, target: Destination, context: &Context) -> Result<()> {
-        self.write_sheet(Some(&self.labels()), target, context)
+        let labels = self.labels();
+        self.write_shapes(Some(&labels), target, context)
     }
 
-    fn write_sheet(
+    fn write_shapes(
         &self,
         labels: Option<&Layer>,
         target: Destination,
         context: &Context,
     ) -> Result<()> {
         let shapes = match self.options.bands {
-            true => self.bands(),
+            true => {
+                contours::require_areas(target)?;
+                self.bands()
+            }
             false => self.lines(),
         };
+        self.write_sheet([Some(&shapes), labels], target, context)
+    }
+
+    fn write_sheet(
+        &self,
+        [shapes, labels]: [Option<&Layer>; 2],
+        target: Destination,
+        context: &Context,
+    ) -> Result<()> {
         let sheet = MapSheet {
-            shapes: &shapes,
+            shapes,
             labels,
             text_height: self.text_height,
         };
@@ -298,11 +311,11 @@ impl ContourMap {
         Ok(())
     }
 
-    /// Writes the labels.
+    /// Writes the labels: as texts in a drawing, else as points.
     ///
     /// # Errors
-    /// Those of [`write`](Self::write).
+    /// If the format cannot be written, or the file cannot be written.
     pub fn write_labels(&self, target: Destination, context: &Context) -> Result<()> {
-        layers::write(&self.labels(), target, context)
+        self.write_sheet([None, Some(&self.labels())], target, context)
     }
 }

@@ -3,14 +3,14 @@
 use std::fmt::Debug;
 
 use super::targets::{Outputs, Target};
-use super::{Keeps, Summary, Tiles, Verb};
+use super::{Keeps, Summary, TileUse, Tiles, Verb};
 use crate::error::{Result, Setting};
 use crate::io::Destination;
-use crate::io::contours::ContourSummary;
+use crate::io::contours::{self, ContourSummary};
 use crate::io::formats::Product;
 use crate::run::context::Context;
 use crate::run::context::notice::Notice;
-use crate::run::products::contour::{self, ContourOptions};
+use crate::run::products::contour::{ContourOptions, contour};
 use crate::run::products::contour_map::contour_map;
 use crate::run::products::surface::{Source, SurfaceProduct};
 
@@ -45,6 +45,15 @@ impl Verb for ContourOptions {
         }
     }
 
+    fn use_of_tiles(&self, targets: &[Target]) -> Result<TileUse> {
+        if self.map.bands {
+            targets.iter().try_for_each(|of| {
+                contours::require_areas(Destination::from(&of.path).in_format(of.extension))
+            })?;
+        }
+        Ok(TileUse::Optional)
+    }
+
     fn takes(&self, _source: &Source) -> Result<()> {
         Ok(())
     }
@@ -58,7 +67,7 @@ impl Verb for ContourOptions {
         if self.map.is_asked_for() {
             return write_map(surface, self, outputs, context);
         }
-        let contours = contour::contour(surface, self, context)?;
+        let contours = contour(surface, self, context)?;
         write_all(outputs, context, |target| contours.write(target, context))
     }
 

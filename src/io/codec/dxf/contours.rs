@@ -1,7 +1,6 @@
 //! Contours as drawings: polylines in the plane with an elevation, and labels as texts.
 
 use std::collections::BTreeSet;
-use std::io::Result;
 
 use super::{Dxf, DxfLayer};
 use crate::crs::Crs;
@@ -41,63 +40,74 @@ pub(crate) fn write_contours(
 }
 
 /// Writes contours of a map: index contours on the layer `CONTOURS_INDEX`, the others on
-/// `CONTOURS`, and labels as texts around their positions on `CONTOUR_LABELS`. Returns warnings.
+/// `CONTOURS`, and labels as texts around their positions on `CONTOUR_LABELS`. All are at their
+/// heights, also if their vertices have none. Returns warnings.
 ///
 /// # Errors
 /// If the file cannot be written.
 pub(crate) fn write_map(target: Destination, sheet: &MapSheet) -> error::Result<Vec<String>> {
+    let (lines, labels) = (at_heights(sheet.shapes), at_heights(sheet.labels));
     let mut bounds = Bounds::default();
-    let shapes = &sheet.shapes.shapes;
-    let vertices = shapes.iter().flat_map(Shape::vertices);
-    vertices.for_each(|p| bounds.add(*p));
-    let index = values(sheet.shapes, "INDEX");
-    let is_index = |shape: usize| {
-        let value = index.as_ref().and_then(|values| values.get(shape));
+    let all = lines.iter().chain(&labels);
+    all.flat_map(vertices).for_each(|at| bounds.add(at));
+    let is_marked = |values: &Option<Vec<&Value>>, shape: usize| {
+        let value = values.as_ref().and_then(|values| values.get(shape));
         matches!(value, Some(Value::Whole(1)))
     };
-    // Lines without heights, and areas, have theirs as an attribute.
-    let heights = values(sheet.shapes, "ELEV").or_else(|| values(sheet.shapes, "ELEV_MIN"));
+    let marks = |name: &str| sheet.shapes.and_then(|layer| values(layer, name));
+    let (index, depressions) = (marks("INDEX"), marks("DEPRESSION"));
+    target.write_with(|out| {
+        let mut drawing = Dxf::begin(out, layers(), &bounds)?;
+        for (number, (shape, height)) in lines.iter().enumerate() {
+            let layer = if is_marked(&index, number) {
+                INDEX
+            } else {
+                LINES
+            };
+            if let Shape::Lines(parts) = shape {
+                for part in parts {
+                    let points: Vec<[f64; 2]> = part.iter().map(|&[x, y, _]| [x, y]).collect();
+                    drawing.contour(layer, *height, &points)?;
+                }
+            }
+        }
+        let rotations = sheet.labels.and_then(|labels| values(labels, "ROTATION"));
+        for (number, label) in labels.iter().enumerate() {
+            let rotation = rotations.as_ref().and_then(|values| values.get(number));
+            let degrees = match rotation {
+                Some(Value::Number(degrees)) => *degrees,
+                _ => 0.0,
+            };
+            let text = Value::Number(label.1).text();
+            for at in vertices(label) {
+                drawing.centered(LABELS, at, sheet.text_height, degrees, &text)?;
+            }
+        }
+        drawing.end()
+    })?;
+    let crs = sheet.shapes.or(sheet.labels).and_then(|of| of.crs.as_ref());
+    let mut warnings: Vec<String> = without_system(crs).into_iter().collect();
+    if (0..lines.len()).any(|number| is_marked(&depressions, number)) {
+        let left_out = "a drawing has no attributes: DEPRESSION is left out";
+        warnings.push(left_out.to_owned());
+    }
+    Ok(warnings)
+}
+
+/// Returns the shapes of a layer with their heights, which their vertices need not have.
+fn at_heights(layer: Option<&Layer>) -> Vec<(&Shape, f64)> {
+    let heights = layer.and_then(|layer| values(layer, "ELEV"));
     let height = |shape: usize| match heights.as_ref().and_then(|values| values.get(shape)) {
         Some(Value::Number(height)) => *height,
         _ => 0.0,
     };
-    target.write_with(|out| {
-        let mut drawing = Dxf::begin(out, layers(), &bounds)?;
-        for (number, shape) in shapes.iter().enumerate() {
-            let layer = if is_index(number) { INDEX } else { LINES };
-            let (Shape::Lines(parts) | Shape::Polygon(parts)) = shape else {
-                continue;
-            };
-            for part in parts {
-                let points: Vec<[f64; 2]> = part.iter().map(|&[x, y, _]| [x, y]).collect();
-                drawing.contour(layer, height(number), &points)?;
-            }
-        }
-        if let Some(labels) = sheet.labels {
-            draw_labels(&mut drawing, labels, sheet.text_height)?;
-        }
-        drawing.end()
-    })?;
-    Ok(without_system(sheet.shapes.crs.as_ref())
-        .into_iter()
-        .collect())
+    let shapes = layer.map_or(&[][..], |layer| &layer.shapes);
+    let numbered = shapes.iter().enumerate();
+    numbered.map(|(i, shape)| (shape, height(i))).collect()
 }
 
-fn draw_labels(drawing: &mut Dxf, labels: &Layer, height: f64) -> Result<()> {
-    let [levels, rotations] = ["ELEV", "ROTATION"].map(|name| values(labels, name));
-    let (Some(levels), Some(rotations)) = (levels, rotations) else {
-        return Ok(());
-    };
-    for ((shape, level), rotation) in labels.shapes.iter().zip(levels).zip(rotations) {
-        let rotation = match rotation {
-            Value::Number(degrees) => *degrees,
-            _ => 0.0,
-        };
-        for &at in shape.vertices() {
-            drawing.centered(LABELS, at, height, rotation, &level.text())?;
-        }
-    }
-    Ok(())
+fn vertices<'a>(&(shape, height): &(&'a Shape, f64)) -> impl Iterator<Item = [f64; 3]> + use<'a> {
+    shape.vertices().map(move |&[x, y, _]| [x, y, height])
 }
 
 fn layers() -> Vec<DxfLayer> {

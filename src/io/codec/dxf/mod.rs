@@ -29,14 +29,14 @@ const LONGEST: usize = 250;
 /// If the file cannot be written.
 pub(crate) fn write_lines(target: Destination, layer: &Layer) -> error::Result<Vec<String>> {
     let mut bounds = Bounds::default();
+    let at_height = |&[x, y, z]: &[f64; 3]| [x, y, if z.is_finite() { z } else { 0.0 }];
     let vertices = layer.shapes.iter().flat_map(Shape::vertices);
-    vertices.for_each(|p| bounds.add(*p));
+    vertices.for_each(|p| bounds.add(at_height(p)));
     let layers = vec![DxfLayer::new("LINES", 7, &mut BTreeSet::new())];
     target.write_with(|out| {
         let mut drawing = Dxf::begin(out, layers, &bounds)?;
         for line in layer.lines() {
-            let height = |z: f64| if z.is_finite() { z } else { 0.0 };
-            drawing.polyline(0, line.iter().map(|&[x, y, z]| [x, y, height(z)]))?;
+            drawing.polyline(0, line.iter().map(at_height))?;
         }
         drawing.end()
     })?;
@@ -168,7 +168,8 @@ pub(crate) struct Dxf<'a> {
 }
 
 impl<'a> Dxf<'a> {
-    /// Begins a drawing with these layers, which later calls name by their positions.
+    /// Begins a drawing with these layers, which later calls name by their positions. Its extent is
+    /// not stated unless the bounds are finite.
     pub(crate) fn begin(
         out: &'a mut dyn Write,
         layers: Vec<DxfLayer>,
@@ -186,10 +187,13 @@ impl<'a> Dxf<'a> {
             (9, "$ACADVER"),
             (1, "AC1009"),
         ])?;
-        for (name, corner) in [("$EXTMIN", min), ("$EXTMAX", max)] {
-            self.word(9, name)?;
-            let is_known = corner.iter().all(|c| c.is_finite());
-            self.point(0, if is_known { *corner } else { [0.0; 3] })?;
+        // Where they are left out, programs compute them.
+        let is_known = min.iter().chain(max).all(|c| c.is_finite());
+        if is_known {
+            for (name, corner) in [("$EXTMIN", min), ("$EXTMAX", max)] {
+                self.word(9, name)?;
+                self.point(0, *corner)?;
+            }
         }
         self.words(&[(0, "ENDSEC"), (0, "SECTION"), (2, "TABLES")])?;
         self.words(&[

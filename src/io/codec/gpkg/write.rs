@@ -175,15 +175,22 @@ pub fn write_lines<'a>(target: impl Into<Destination<'a>>, layer: &Layer) -> Res
 }
 
 /// Writes contours of a map as [`write_lines`] does, and labels as a second layer, whose name is
-/// that of the file and `_labels`. Returns warnings.
+/// that of the file and `_labels`; without contours, as the only one. Returns warnings.
 ///
 /// # Errors
 /// As [`write_contours`].
 pub(crate) fn write_map(target: Destination, sheet: &MapSheet) -> Result<Vec<String>> {
     write(target, |database, name| {
-        let mut warnings = add_shapes(database, name, sheet.shapes)?;
+        let mut warnings = Vec::new();
+        if let Some(shapes) = sheet.shapes {
+            warnings = add_shapes(database, name, shapes)?;
+        }
         if let Some(labels) = sheet.labels {
-            warnings.extend(add_shapes(database, &format!("{name}_labels"), labels)?);
+            let own = match sheet.shapes {
+                Some(_) => format!("{name}_labels"),
+                None => name.to_owned(),
+            };
+            warnings.extend(add_shapes(database, &own, labels)?);
         }
         Ok(warnings)
     })
