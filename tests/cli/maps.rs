@@ -154,7 +154,20 @@ fn some_formats_take_labels_with_the_lines() {
         has_records("m.gpkg:m", lines.len());
         has_records("m.gpkg:m_labels", labels.len());
     }
-    run_in(&folder, &words("m.shp", "m.shp")).fails(2, &["the output is named twice"]);
+    let cure = "give labels another name, or write both as .gpkg or .dxf";
+    for name in ["m.shp", "n.geojson"] {
+        run_in(&folder, &words(name, name)).fails(2, &["the output is named twice", cure]);
+    }
+    // Two names, and one table of attributes.
+    let shared = [
+        "another output writes m.shx, too",
+        "give one of them another name",
+    ];
+    run_in(&folder, &words("m.shp", "m.SHP")).fails(2, &shared);
+    let twice = ["contour", "hills.xyz", "-o", "m.shp", "-o", "m.SHP"];
+    run_in(&folder, &twice).fails(2, &shared);
+    let apart = ["contour", "hills.xyz", "-o", "x.shp", "-o", "x.geojson"];
+    run_in(&folder, &apart).works(&["written     x.shp"]);
 }
 
 /// Returns the value behind a code, from a position on.

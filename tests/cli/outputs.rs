@@ -308,8 +308,10 @@ fn what_is_replaced_keeps_its_mode_and_its_links() {
 #[test]
 fn one_file_by_two_names_is_named_twice() {
     let folder = folder_with(&[("a.xyz", SLOPE)]);
-    run_in(&folder, &["tin", "a.xyz", "-o", "t.ply", "-o", "./t.ply"])
-        .fails(2, &["the output is named twice"]);
+    run_in(&folder, &["tin", "a.xyz", "-o", "t.ply", "-o", "./t.ply"]).fails(
+        2,
+        &["the output is named twice", "give one of them another name"],
+    );
     assert_eq!(files_of(folder.path()), ["a.xyz"]);
 }
 

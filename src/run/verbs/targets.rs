@@ -126,13 +126,24 @@ impl Targets {
             let formats = formats_of(Product::Lines, |_| ());
             let found = resolve(std::slice::from_ref(labels), &may_replace, &formats, read)?;
             outputs.labels = found.targets.into_iter().next();
-            // One name for one file, however it is written.
-            let same = outputs
-                .targets
-                .iter()
-                .find(|own| is_same(&own.path, labels));
-            if let (Some(own), Some(labels)) = (same, &mut outputs.labels) {
-                labels.path.clone_from(&own.path);
+            if let Some(labels) = &mut outputs.labels {
+                match outputs
+                    .targets
+                    .iter()
+                    .find(|own| is_same(&own.path, &labels.path))
+                {
+                    // One name for one file, however it is written.
+                    Some(own)
+                        if product == Product::Contours && contours::takes_labels(&labels.path) =>
+                    {
+                        labels.path.clone_from(&own.path);
+                    }
+                    Some(_) => {
+                        return Err(named_twice(&labels.path)
+                            .cure("give labels another name, or write both as .gpkg or .dxf"));
+                    }
+                    None => require_own_files(labels, &outputs.targets)?,
+                }
             }
         }
         self.check_tables(read)?;
@@ -142,13 +153,8 @@ impl Targets {
                 .iter()
                 .any(|target| is_same(&target.path, table))
         };
-        // Some formats have room for both.
-        let labels = self
-            .labels
-            .as_deref()
-            .filter(|labels| !(product == Product::Contours && contours::takes_labels(labels)));
-        match self.tables().chain(labels).find(is_target) {
-            Some(table) => Err(Error::usage("the output is named twice").in_file(table)),
+        match self.tables().find(is_target) {
+            Some(table) => Err(named_twice(table).cure(OTHER_NAME)),
             None => Ok(outputs),
         }
     }
@@ -326,21 +332,49 @@ pub(crate) fn resolve<F: Copy>(
         require_name(path)?;
         let format = find(path, formats)?;
         if targets.iter().any(|target| is_same(&target.path, path)) {
-            return Err(Error::usage("the output is named twice").in_file(path));
+            return Err(named_twice(path).cure(OTHER_NAME));
         }
         require_free(path, format, may_replace, inputs)?;
-        targets.push(Target {
+        let target = Target {
             path: path.clone(),
             kind: format.kind,
             extension: format.extension,
             companions: format.companions,
-        });
+        };
+        require_own_files(&target, &targets)?;
+        targets.push(target);
     }
     Ok(Outputs {
         targets,
         labels: None,
         set: OutputSet::default(),
     })
+}
+
+/// What to do about outputs that are one file.
+const OTHER_NAME: &str = "give one of them another name";
+
+#[cold]
+fn named_twice(path: &Path) -> Error {
+    Error::usage("the output is named twice").in_file(path)
+}
+
+/// Returns an error if a file that is written with a target is also written with another one, as
+/// `a.dbf` with `a.shp` and `a.SHP`. Formats that differ may share files: they say the same.
+fn require_own_files<F>(target: &Target<F>, others: &[Target<F>]) -> Result<()> {
+    let others: Vec<PathBuf> = others
+        .iter()
+        .filter(|other| other.extension == target.extension)
+        .flat_map(Target::files)
+        .collect();
+    let mut own = target.files();
+    match own.find(|file| others.iter().any(|other| is_same(file, other))) {
+        Some(file) => {
+            let error = format!("another output writes {}, too", file.display());
+            Err(Error::usage(error).in_file(&target.path).cure(OTHER_NAME))
+        }
+        None => Ok(()),
+    }
 }
 
 /// The part of what is announced for the files of tasks that is written at least: few points may be
