@@ -35,6 +35,7 @@ pub(crate) fn parameter(setting: Setting) -> Option<String> {
         Setting::Class => "classes",
         Setting::Return => "returns",
         Setting::TargetCrs => "to_crs",
+        Setting::TwoDimensions => "in_plane",
         other => other.name(),
     };
     Some(name.replace('-', "_"))

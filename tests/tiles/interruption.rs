@@ -27,6 +27,35 @@ fn done(job: &Path) -> Vec<(String, SystemTime)> {
 }
 
 #[test]
+fn other_options_of_a_map_are_named_one_by_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let points: String = (0..400)
+        .map(|k| {
+            let [x, y] = [k % 20, k / 20];
+            format!("{x} {y} {}\n", (x * x + 3 * y) % 7)
+        })
+        .collect();
+    std::fs::write(folder.path().join("p.xyz"), points).unwrap();
+    let run = |options: &str| {
+        let words = format!("contour p.xyz --tiles 2x2 --job j --overwrite -o c.geojson {options}");
+        run_in(&folder, &words.split_whitespace().collect::<Vec<_>>())
+    };
+    run("--preset cartographic --labels-output l.geojson").works(&[]);
+    for (options, differs) in [
+        (
+            "--preset cartographic --labels-output l.geojson --min-area 50 --labels uphill",
+            "--labels, --min-area\n",
+        ),
+        ("--preset cartographic", "--labels-output\n"),
+        ("--labels-output l.geojson --2d", "--2d, --preset\n"),
+        ("", "--labels-output, --preset\n"),
+    ] {
+        let differs = format!("what differs: {differs}");
+        run(&format!("{options} --resume --dry-run")).fails(2, &[&differs]);
+    }
+}
+
+#[test]
 fn what_is_missing_or_damaged_is_done_again_and_nothing_else() {
     let folder = tempfile::tempdir().unwrap();
     let words = format!("dem {} --tiles 3x3 --job kept", valley());

@@ -29,6 +29,9 @@ const OUTPUT: &str = "the output";
 /// The name of the table of replaced points.
 const REPLACED: &str = "the table of replaced points";
 
+/// The name under which the file of labels is listed.
+const LABELS: &str = "the file of labels";
+
 /// Between the names of settings that have one value.
 const OR: &str = " or ";
 
@@ -133,7 +136,7 @@ pub(super) fn add_targets(options: &mut Options, targets: &Targets, tiles: &Tile
     listed.put(REPLACED, replaced);
     // No job has labels: the lists of those that began without this option stay.
     if labels.is_some() {
-        listed.add(&[Setting::LabelsOutput], labels);
+        listed.put(LABELS, labels);
     }
     listed.add(&[Setting::SkipBad], &tiles.bad);
     *options = listed.0;

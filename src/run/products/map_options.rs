@@ -1,6 +1,8 @@
 //! How contours become those of a map.
 
-use crate::error::{Error, Result};
+use std::fmt::Debug;
+
+use crate::error::{Error, Result, Setting};
 use crate::terrain::{LabelTops, Levels, MapRules};
 
 /// How contours become those of a map. The default leaves them exact.
@@ -56,6 +58,48 @@ impl MapOptions {
     /// Returns true unless contours are exact, and lines with their heights are all that is wanted.
     pub fn is_asked_for(&self) -> bool {
         *self != MapOptions::default()
+    }
+
+    /// Calls a function with the name and the value of each option that is not left at its default;
+    /// of the file of labels, that there is one.
+    pub(crate) fn list(&self, add: &mut dyn FnMut(Setting, &dyn Debug)) {
+        let MapOptions {
+            preset,
+            smooth,
+            simplify,
+            min_length,
+            min_area,
+            keep_depressions,
+            index_every,
+            bands,
+            without_heights,
+            labels,
+            label_height,
+        } = self;
+        let tops = labels.filter(|&tops| tops != LabelTops::default());
+        let given: [(Setting, &dyn Debug, bool); 12] = [
+            (Setting::Preset, preset, preset.is_some()),
+            (Setting::Smooth, smooth, smooth.is_some()),
+            (Setting::Simplify, simplify, simplify.is_some()),
+            (Setting::MinLength, min_length, min_length.is_some()),
+            (Setting::MinArea, min_area, min_area.is_some()),
+            (
+                Setting::KeepDepressions,
+                keep_depressions,
+                *keep_depressions,
+            ),
+            (Setting::IndexEvery, index_every, index_every.is_some()),
+            (Setting::Bands, bands, *bands),
+            (Setting::TwoDimensions, without_heights, *without_heights),
+            (Setting::Labels, &tops, tops.is_some()),
+            (Setting::LabelsOutput, &labels.is_some(), labels.is_some()),
+            (Setting::LabelHeight, label_height, label_height.is_some()),
+        ];
+        for (setting, value, is_given) in given {
+            if is_given {
+                add(setting, value);
+            }
+        }
     }
 
     /// Returns true if lines are not exact: smoothed or simplified.

@@ -40,9 +40,7 @@ impl Verb for ContourOptions {
         add(Setting::Base, base);
         add(Setting::Levels, levels);
         // The lists of jobs that began before there were maps stay.
-        if map.is_asked_for() {
-            add(Setting::Preset, map);
-        }
+        map.list(add);
     }
 
     fn use_of_tiles(&self, targets: &[Target]) -> Result<TileUse> {
