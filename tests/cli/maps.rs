@@ -41,7 +41,7 @@ fn a_map_has_lines_labels_and_a_promise() {
     ];
     run_in(&folder, &words).works(&[
         "left out    ",
-        "off the surface at most, no crossings",
+        "off the surface at most, measured along all lines",
         "labels      ",
         "written     map.geojson",
         "written     labels.geojson",
@@ -230,6 +230,38 @@ fn lines_in_the_plane_have_no_heights() {
             assert!(line["properties"]["ELEV"].is_number());
         }
     }
+}
+
+/// Hills so far away that 32 bits of a coordinate are not enough for the tolerance.
+#[test]
+fn where_rounding_is_coarse_a_warning_says_so() {
+    let moved = |shift: f64| {
+        let move_row = |row: &str| {
+            let (x, rest) = row.split_once(' ').unwrap();
+            format!("{} {rest}\n", x.parse::<f64>().unwrap() + shift)
+        };
+        hills().lines().map(move_row).collect::<String>()
+    };
+    let folder = folder_with(&[("far.xyz", &moved(1e10)), ("near.xyz", &moved(6.7e6))]);
+    let words = ["--max-edge", "none", "-o", "c.geojson", "--overwrite"];
+    let make = |name: &str, more: &[&str]| {
+        let own = ["contour", name];
+        run_in(&folder, &[&own[..], &words, more].concat())
+    };
+    let warning = "coordinates up to 1.0e10 have too few digits for contours within 0.5 units";
+    for options in [
+        &["--smooth"][..],
+        &["--min-area", "5"],
+        &["--simplify", "1"],
+    ] {
+        make("far.xyz", options).works(&[warning, "lines may meet; shift the input toward 0"]);
+        let near = make("near.xyz", options);
+        near.works(&[]);
+        assert!(!near.stderr.contains("too few digits"), "{}", near.stderr);
+    }
+    let exact = make("far.xyz", &["--index-every", "5"]);
+    exact.works(&[]);
+    assert!(!exact.stderr.contains("too few digits"), "{}", exact.stderr);
 }
 
 #[test]

@@ -11,8 +11,8 @@ use breakline::error::Wording;
 use breakline::run::{
     self, Context, ContourOptions, Degrees, DemOptions, Division, EdgeLimit, Execution,
     FlatOptions, FrameOptions, HillshadeOptions, Input, JobCommand, LightOptions, LineRequest,
-    LowerEdge, Monitor, Notice, PerRecord, Progress, Severity, Size, Source, Stage, StoredJob,
-    SurfaceRequest, SystemOptions, Targets, TileOptions, TinRequest, Verb, WallOptions,
+    LowerEdge, MapOptions, Monitor, Notice, PerRecord, Progress, Severity, Size, Source, Stage,
+    StoredJob, SurfaceRequest, SystemOptions, Targets, TileOptions, TinRequest, Verb, WallOptions,
     WriteRequest,
 };
 use breakline::terrain::Classes;
@@ -44,6 +44,7 @@ const NOT_IN_TILES: &[(&str, &str)] = &[
     ("Simplified", "of `tin`, in one piece only"),
     ("HeightsAboveEllipsoid", "of `terrain-tiles`"),
     ("BeyondBound", "of `terrain-tiles`"),
+    ("BeyondTolerance", "of numbers with too few digits"),
     ("DelaunayUnchecked", "of `check`"),
     ("RegionAreasUnused", "of `triangulate`"),
     ("SeedUnused", "of `triangulate`"),
@@ -248,6 +249,9 @@ fn cases_of_points(files: &Files) -> Vec<Case> {
     let in_feet = files.write("feet.las", in_feet);
     let far = files.tile("far.las", [1e5, 0.0], 2);
     let text = files.slope("t.xyz", 8, 1.0);
+    let at = |k: u32| [1e10 + f64::from(k % 9), f64::from(k / 9)];
+    let rows = (0..81).map(|k| format!("{} {} {}\n", at(k)[0], at(k)[1], k % 9));
+    let far = files.write("far.xyz", rows.collect::<String>());
     let wide = files.slope("w.xyz", 8, 60.0);
     let rails: Vec<String> = (0..40)
         .map(|i| format!("{} {} {i}\n", 5 * i, f64::from(i % 2) * 0.2 - 300.0))
@@ -427,6 +431,13 @@ fn cases_of_points(files: &Files) -> Vec<Case> {
             ..DemOptions::default()
         }),
         case(points(&[&text]), &["DefaultInterval"]).of(ContourOptions::default()),
+        case(points(&[&far]), &["CoarseCoordinates"]).of(ContourOptions {
+            map: MapOptions {
+                min_area: Some(4.0),
+                ..MapOptions::default()
+            },
+            ..ContourOptions::default()
+        }),
     ]
 }
 

@@ -250,7 +250,7 @@ fn print_map(map: &MapSummary, crs: Option<&Crs>, console: &Console) {
     if let Some(deviation) = map.deviation {
         let deviation = Units::of(crs).height(deviation);
         console.line(format_args!(
-            "deviation   {deviation} off the surface at most, no crossings"
+            "deviation   {deviation} off the surface at most, measured along all lines"
         ));
     }
     if let Some(bands) = map.bands {

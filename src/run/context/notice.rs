@@ -400,6 +400,20 @@ pub enum Notice {
     DefaultResolution(Quantity),
     /// The default interval of contours is used.
     DefaultInterval(Quantity),
+    /// Coordinates are so large that rounding may break what is promised of contours for maps.
+    CoarseCoordinates {
+        /// The largest coordinate, without its sign.
+        largest: f64,
+        /// How far lines may be off the surface.
+        tolerance: Quantity,
+    },
+    /// Contours for maps are farther off the surface than was asked for.
+    BeyondTolerance {
+        /// The largest difference in height along a line.
+        deviation: Quantity,
+        /// How far lines may be off the surface.
+        tolerance: Quantity,
+    },
     /// Heights are multiplied by this, to match the units of the plane.
     HeightFactor(f64),
     /// Coordinates are angles, and heights are multiplied by a number that makes slopes far too
@@ -600,6 +614,8 @@ impl Notice {
             | Notice::CapsLost { .. }
             | Notice::HullLost(_)
             | Notice::SteepAngles { .. }
+            | Notice::CoarseCoordinates { .. }
+            | Notice::BeyondTolerance { .. }
             | Notice::LevelRings { .. }
             | Notice::RiverHeights { .. }
             | Notice::RiversLowered { .. }

@@ -258,6 +258,8 @@ fn text(notice: &Notice) -> Wording {
         Notice::ExtentApart => extent_apart(),
         Notice::DefaultResolution(width) => default_resolution(width),
         Notice::DefaultInterval(height) => default_interval(height),
+        Notice::CoarseCoordinates { largest, tolerance } => coarse_coordinates(*largest, tolerance).into(),
+        Notice::BeyondTolerance { deviation, tolerance } => beyond_tolerance(deviation, tolerance).into(),
         Notice::HeightFactor(factor) => height_factor(*factor),
         Notice::SteepAngles { factor, usual } => steep_angles(*factor, *usual),
         Notice::AnglesAsLengths(lengths) => angles_as_lengths(*lengths),
@@ -674,6 +676,18 @@ fn default_interval(height: &Quantity) -> Wording {
         Setting::Interval,
         ")"
     ]
+}
+
+fn coarse_coordinates(largest: f64, tolerance: &Quantity) -> String {
+    format!(
+        "coordinates up to {largest:.1e} have too few digits for contours within {tolerance}: lines may meet; shift the input toward 0"
+    )
+}
+
+fn beyond_tolerance(deviation: &Quantity, tolerance: &Quantity) -> String {
+    format!(
+        "lines are up to {deviation} off the surface, more than {tolerance}: coordinates have too few digits"
+    )
 }
 
 fn height_factor(factor: f64) -> Wording {

@@ -84,6 +84,15 @@ pub fn contour_map(
         .notice(surface.crs())
         .into_iter()
         .for_each(|notice| journal.add(notice));
+    let heights = Units::of(surface.crs());
+    let tolerance = rules.tolerance(&levels);
+    let extent = surface.extent();
+    if !rules.has_digits(&levels, &extent) {
+        journal.add(Notice::CoarseCoordinates {
+            largest: (0..3).map(|axis| extent.largest(axis)).fold(0.0, f64::max),
+            tolerance: heights.height(tolerance),
+        });
+    }
     let exact = match &surface.model {
         // Lines that end at vertices are joined by what parts know of these.
         Model::Parts(parts) if rules.keeps_exact() => {
@@ -113,6 +122,12 @@ pub fn contour_map(
         finding.end()?;
         Ok(found)
     })?;
+    if contours.deviation > tolerance {
+        journal.add(Notice::BeyondTolerance {
+            deviation: heights.height(contours.deviation),
+            tolerance: heights.height(tolerance),
+        });
+    }
     let index_step = map.index_step();
     let label_rules = LabelRules::of_interval(levels.interval());
     let text_height = map.label_height.unwrap_or(label_rules.height);

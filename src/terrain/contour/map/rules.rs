@@ -64,6 +64,18 @@ impl MapRules {
         !changes && self.min_area <= 0.0 && self.min_length <= 0.0
     }
 
+    /// Returns how far the height of a line may differ from that of the surface.
+    pub fn tolerance(&self, levels: &Levels) -> f64 {
+        self.smooth.unwrap_or(0.5 * levels.interval())
+    }
+
+    /// Returns true if coordinates within bounds have digits enough for what is promised of lines:
+    /// with fewer, rounding moves a line by more than a millionth of the tolerance.
+    pub fn has_digits(&self, levels: &Levels, bounds: &Bounds) -> bool {
+        let largest = (0..3).map(|axis| bounds.largest(axis)).fold(0.0, f64::max);
+        self.keeps_exact() || largest <= MOST_TOLERANCES * self.tolerance(levels)
+    }
+
     /// Returns true if a line is kept that has an area and a relief on its small side, the relief
     /// in intervals.
     pub(super) fn keeps(&self, area: f64, relief: f64) -> bool {
@@ -115,6 +127,9 @@ impl MapRules {
     }
 }
 
+/// The largest coordinate, in tolerances: 2^52 / 2^20.
+const MOST_TOLERANCES: f64 = 4_294_967_296.0;
+
 /// The radius of the smoothing of heights, in intervals.
 const RADIUS: f64 = 8.0;
 
@@ -151,7 +166,7 @@ impl Scale {
     /// Returns what rules and levels ask for on a surface within bounds.
     pub(super) fn of(rules: &MapRules, levels: &Levels, bounds: &Bounds) -> Self {
         let interval = levels.interval();
-        let whole = rules.smooth.unwrap_or(0.5 * interval);
+        let whole = rules.tolerance(levels);
         let delta = (1e-4 * interval).min(whole / 8.0);
         let usable = (whole * (1.0 - ROUNDING) - 2.0 * delta).max(0.0);
         let corridor = match rules.smooth {
