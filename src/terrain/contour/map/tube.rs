@@ -53,7 +53,8 @@ pub(super) struct Tube {
 ///
 /// # Complexity
 /// Proportional to the vertices, times those within the radius of each, on all threads. About 80
-/// bytes for each vertex, of which 8 remain.
+/// bytes for each vertex, of which 8 remain; and for each thread, 4 for each vertex in a strip of
+/// twice the radius.
 pub(super) fn smoothed(surface: &dyn Surface, tube: Tube, go_on: GoOn) -> Result<Vec<f64>> {
     let (vertices, ranks) = Vertices::of(surface);
     // If vertices fill the box.
@@ -169,7 +170,7 @@ impl Vertices {
         let done: Result<()> = batches.try_for_each(|(batch, after)| {
             go_on(after.len() as u64)?;
             let taken = lock().pop();
-            let mut around = taken.unwrap_or_else(|| Around::new(self.positions.len()));
+            let mut around = taken.unwrap_or_default();
             for (i, height) in after.iter_mut().enumerate() {
                 let center = batch * BATCH + i;
                 if !self.is_held[center] {
@@ -213,28 +214,31 @@ impl Vertices {
 }
 
 /// The vertices around another one.
+#[derive(Default)]
 struct Around {
     /// The vertices, in the order of coordinates.
     found: Vec<u32>,
-    /// The last vertex around which each one was found.
+    /// The last vertex around which each one was found, of those whose x is near enough: in the
+    /// order of coordinates they follow each other. So a thread needs room for a strip only.
     seen: Vec<u32>,
 }
 
 impl Around {
-    fn new(count: usize) -> Self {
-        Around {
-            found: Vec::new(),
-            seen: vec![NONE; count],
-        }
-    }
-
     /// Collects the vertices within a radius that edges lead to, but not through held ones.
     fn collect(&mut self, vertices: &Vertices, center: u32, radius: f64) {
         let [x, y, _] = vertices.positions[center as usize];
         let square = radius * radius;
+        // The products that the distances below are made of: what is near enough has its x here.
+        let is_far = |at: &[f64; 3]| (at[0] - x) * (at[0] - x) >= square;
+        let (before, behind) = vertices.positions.split_at(center as usize);
+        let first = before.partition_point(is_far);
+        let end = center as usize + behind.partition_point(|at| !is_far(at)).max(1);
+        if self.seen.len() < end - first {
+            self.seen.resize(end - first, NONE);
+        }
         self.found.clear();
         self.found.push(center);
-        self.seen[center as usize] = center;
+        self.seen[center as usize - first] = center;
         let mut next = 0;
         while let Some(&vertex) = self.found.get(next) {
             next += 1;
@@ -244,13 +248,13 @@ impl Around {
             }
             let [start, end] = [0, 1].map(|k| vertices.starts[vertex + k] as usize);
             for &other in &vertices.neighbors[start..end] {
-                let seen = &mut self.seen[other as usize];
-                if *seen == center {
-                    continue;
-                }
                 let at = vertices.positions[other as usize];
                 let [dx, dy] = [at[0] - x, at[1] - y];
-                if dx * dx + dy * dy < square {
+                if dx * dx + dy * dy >= square {
+                    continue;
+                }
+                let seen = &mut self.seen[other as usize - first];
+                if *seen != center {
                     *seen = center;
                     self.found.push(other);
                 }
