@@ -133,8 +133,8 @@ pub fn map_work(surface: &dyn Surface, rules: &MapRules) -> u64 {
 /// Returns what [`map_contours`] does, and can be stopped.
 ///
 /// # Errors
-/// Those of [`map_contours`], and the one of `go_on`, which is called a few times a second at
-/// least, unless bands are triangulated.
+/// Those of [`map_contours`], and the one of `go_on`. That is called while heights are smoothed and
+/// lines are worked on, but not while the surface is indexed, traced or divided into regions.
 ///
 /// # Complexity
 /// That of [`map_contours`].
