@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use breakline::data::Tiling;
-use breakline::run::{self, Existing, TerrainFolder, TerrainFormat, TerrainTilesOptions};
+use breakline::run::{self, TerrainFolder, TerrainFormat, TerrainTilesOptions};
 use breakline::terrain::PyramidRule;
 use pyo3::prelude::*;
 
@@ -67,7 +67,10 @@ pub(crate) fn terrain_tiles(
     let surface = surface.product();
     let (target, overwrite) = folder;
     let report = work::run(py, &call, |context| -> Result<_> {
-        let folder = TerrainFolder::create(&target, Existing::of(overwrite))?;
+        let folder = match overwrite {
+            true => TerrainFolder::replace(&target)?,
+            false => TerrainFolder::create(&target)?,
+        };
         Ok(run::write_terrain_tiles(
             &surface, &options, folder, context,
         )?)

@@ -26,7 +26,7 @@ def test_tables_and_files_give_the_results_of_single_functions(folder):
     tables = {"input": {"files": folder / "a.xyz", "max_edge": "none"}, "product": products(folder)}
     report = breakline.run(tables)
     assert report["files"] == [str(folder / "dem.tif")]
-    breakline.dem(folder / "a.xyz", 2.5, max_edge="none", extent=(0, 0, 10, 10), output=folder / "single.tif")
+    breakline.dem(folder / "a.xyz", resolution=2.5, max_edge="none", extent=(0, 0, 10, 10), output=folder / "single.tif")
     assert (folder / "dem.tif").read_bytes() == (folder / "single.tif").read_bytes()
     (row,) = breakline.volume(folder / "a.xyz", plane=1, max_edge="none").rows
     assert report["products"][1]["report"]["rows"][0]["cut"] == row.cut
@@ -48,7 +48,7 @@ def test_tables_and_files_give_the_results_of_single_functions(folder):
 def test_what_is_wrong_is_named_and_nothing_is_written(folder):
     tables = {"input": {"files": folder / "a.xyz"}, "product": products(folder)}
     tables["product"][1]["plan"] = tables["product"][1].pop("plane")
-    with pytest.raises(breakline.UsageError, match="product 2: `plan` is not an option of `volume`.*`plane`"):
+    with pytest.raises(breakline.UsageError, match="(?s)product 2: `plan` is not an option of `volume`.*`plane`"):
         breakline.run(tables)
     with pytest.raises(breakline.ArgumentTypeError, match="object is not a value"):
         breakline.run({"input": {"files": object()}})

@@ -15,7 +15,7 @@ def ridge():
     return np.column_stack([x.ravel(), y.ravel(), 400 + 5 * np.abs(np.arange(144) % 12 - 5)])
 
 
-WHERE = {"crs": "EPSG:4326", "force_degrees": True, "vertical_offset": 50.0, "max_level": 12}
+WHERE = {"crs": "EPSG:4326", "force_degrees": True, "max_edge": "none", "vertical_offset": 50.0, "max_level": 12}
 
 
 def test_the_levels_are_those_of_the_files(tmp_path):
@@ -31,7 +31,7 @@ def test_the_levels_are_those_of_the_files(tmp_path):
 
 
 def test_a_folder_is_replaced_only_if_asked_for(tmp_path):
-    tin = breakline.tin(ridge(), crs="EPSG:4326", force_degrees=True)
+    tin = breakline.tin(ridge(), crs="EPSG:4326", force_degrees=True, max_edge="none")
     how = {name: WHERE[name] for name in ("vertical_offset", "max_level")}
     breakline.terrain_tiles(tin, output=tmp_path / "tiles", no_gzip=True, **how)
     with pytest.raises(breakline.UsageError, match="overwrite=True"):

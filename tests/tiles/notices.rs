@@ -251,7 +251,7 @@ fn cases_of_points(files: &Files) -> Vec<Case> {
     let text = files.slope("t.xyz", 8, 1.0);
     let at = |k: u32| [1e10 + f64::from(k % 9), f64::from(k / 9)];
     let rows = (0..81).map(|k| format!("{} {} {}\n", at(k)[0], at(k)[1], k % 9));
-    let far = files.write("far.xyz", rows.collect::<String>());
+    let coarse = files.write("coarse.xyz", rows.collect::<String>());
     let wide = files.slope("w.xyz", 8, 60.0);
     let rails: Vec<String> = (0..40)
         .map(|i| format!("{} {} {i}\n", 5 * i, f64::from(i % 2) * 0.2 - 300.0))
@@ -431,7 +431,7 @@ fn cases_of_points(files: &Files) -> Vec<Case> {
             ..DemOptions::default()
         }),
         case(points(&[&text]), &["DefaultInterval"]).of(ContourOptions::default()),
-        case(points(&[&far]), &["CoarseCoordinates"]).of(ContourOptions {
+        case(points(&[&coarse]), &["CoarseCoordinates"]).of(ContourOptions {
             map: MapOptions {
                 min_area: Some(4.0),
                 ..MapOptions::default()

@@ -105,7 +105,7 @@ def terrain_tiles(
     >>> folder = pathlib.Path(tempfile.mkdtemp(), "tiles")
     >>> slope = [[7.0, 46.0, 400], [7.01, 46.0, 400], [7.01, 46.01, 500], [7.0, 46.01, 500]]
     >>> levels = breakline.terrain_tiles(
-    ...     slope, crs="EPSG:4326", force_degrees=True, vertical_offset=0, max_level=12, output=folder
+    ...     slope, crs="EPSG:4326", force_degrees=True, max_edge="none", vertical_offset=0, max_level=12, output=folder
     ... )
     >>> len(levels), levels[-1].tiles, (folder / "layer.json").exists()
     (13, 1, True)

@@ -11,8 +11,7 @@ use crate::cli::report::summary::{counted, print_surface};
 use crate::data::Tiling;
 use crate::error::Result;
 use crate::run::{
-    self, Degrees, Existing, LevelReport, SurfaceReport, TerrainFolder, TerrainFormat,
-    TerrainTilesOptions,
+    self, Degrees, LevelReport, SurfaceReport, TerrainFolder, TerrainFormat, TerrainTilesOptions,
 };
 use crate::terrain::{Method, PyramidRule};
 
@@ -22,7 +21,10 @@ pub(crate) fn run(args: &TerrainTilesArgs, console: &Console) -> Result<Exit> {
     let options = options(args);
     options.check()?;
     // Before the surface, which may take minutes.
-    let folder = TerrainFolder::create(&args.output, Existing::of(args.overwrite))?;
+    let folder = match args.overwrite {
+        true => TerrainFolder::replace(&args.output)?,
+        false => TerrainFolder::create(&args.output)?,
+    };
     let mut plan = SurfacePlan::resolve(&args.surface, console)?;
     // Tiles are in degrees.
     plan.request.systems.degrees = Degrees::Allow;

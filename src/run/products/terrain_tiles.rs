@@ -19,7 +19,6 @@ use crate::run::context::notice::Notice;
 use crate::run::context::units::Units;
 use crate::run::context::{Context, Journal, Size, Stage};
 use crate::run::sources::proj::{self, TransformOptions};
-use crate::run::verbs::targets::Existing;
 use crate::terrain::{Level, Pyramid, PyramidRule, TileReport, is_height};
 
 /// The file by which a viewer finds quantized meshes, and that by which it finds 3D Tiles.
@@ -64,18 +63,22 @@ fn may_be_of_tiles(path: &Path) -> bool {
 pub struct TerrainFolder(OutputFolder);
 
 impl TerrainFolder {
-    /// Makes sure that tiles can be written to a folder. One that exists is replaced if that is
-    /// asked for, if this program has written it, and if it has no other files.
+    /// Makes sure that tiles can be written to a folder that does not exist.
+    ///
+    /// # Errors
+    /// If it exists, or the folder around it does not exist or cannot be written to.
+    pub fn create(target: &Path) -> Result<Self> {
+        OutputFolder::create(target, &TILES).map(TerrainFolder)
+    }
+
+    /// Makes sure that tiles can be written to a folder. One that exists is replaced if this
+    /// program has written it, and it has no other files.
     ///
     /// # Errors
     /// If there is something that is not replaced, or the folder around it does not exist or cannot
     /// be written to.
-    pub fn create(target: &Path, existing: Existing) -> Result<Self> {
-        let folder = match existing {
-            Existing::Keep => OutputFolder::create(target, &TILES)?,
-            Existing::Replace => OutputFolder::replace(target, &TILES)?,
-        };
-        Ok(TerrainFolder(folder))
+    pub fn replace(target: &Path) -> Result<Self> {
+        OutputFolder::replace(target, &TILES).map(TerrainFolder)
     }
 }
 
@@ -520,7 +523,7 @@ mod tests {
             let native: std::path::PathBuf = Path::new(path).components().collect();
             may_be_of_tiles(&native)
         };
-        assert!(own.iter().all(|path| is_own(path)));
+        assert!(own.iter().all(is_own));
         let taken = others.iter().find(|path| is_own(path));
         assert_eq!(taken, None);
     }

@@ -16,6 +16,7 @@ mod heights;
 mod lines;
 mod normals;
 mod plan;
+mod report;
 mod rule;
 #[cfg(test)]
 mod tests;
@@ -28,10 +29,10 @@ use rayon::prelude::*;
 use self::heights::Heights;
 use self::lines::TileLines;
 use self::plan::{tiles_of, to_earth};
+pub use self::report::TileReport;
 pub(crate) use self::rule::is_height;
 pub use self::rule::{Level, PyramidRule};
 use self::tile::Outside;
-pub use self::tile::TileReport;
 use crate::data::{AT_ONCE, Bounds, Surface, TerrainTile, Tiling, area_of, corners};
 use crate::error::{Error, Result};
 

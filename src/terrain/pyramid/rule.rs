@@ -1,6 +1,6 @@
 //! Which levels a pyramid has, and how near they are to the surface.
 
-use super::tile::TileReport;
+use super::report::TileReport;
 use crate::crs::SEMI_AXES;
 use crate::data::{TilePosition, Tiling};
 use crate::error::{Error, Result, Setting, wording};

@@ -7,6 +7,7 @@ use rustc_hash::FxHashMap;
 use super::heights::Heights;
 use super::lines::{Chain, Rises, chain, height_along, height_on, in_steps, rises, steps_between};
 use super::normals::normals;
+use super::report::TileReport;
 use super::rule::Level;
 use crate::data::{TerrainTile, TilePosition};
 use crate::error::{Error, Result};
@@ -16,32 +17,6 @@ use crate::terrain::simplify::choose_around;
 use crate::triangulation::geometry::Terrain;
 use crate::triangulation::tds::CellId;
 use crate::triangulation::{Delaunay, Location};
-
-/// How near a tile is to the surface.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct TileReport {
-    /// The vertices.
-    pub vertices: usize,
-    /// The triangles.
-    pub triangles: usize,
-    /// The heights of the surface that it was measured against.
-    pub heights: usize,
-    /// The largest distance of a height, in meters.
-    pub largest: f64,
-    /// The number of heights that are further off than the bound, because steps are too large.
-    pub beyond: usize,
-}
-
-impl TileReport {
-    /// Adds the counts of another tile.
-    pub fn merge(&mut self, other: &TileReport) {
-        self.vertices += other.vertices;
-        self.triangles += other.triangles;
-        self.heights += other.heights;
-        self.largest = self.largest.max(other.largest);
-        self.beyond += other.beyond;
-    }
-}
 
 const STEPS: u16 = TerrainTile::STEPS;
 

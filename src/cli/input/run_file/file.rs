@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use super::nearest::nearest;
+use super::product_words::ProductWords;
 use super::tree::{self, Entry, Value, ends_of_lines};
-use super::words::ProductWords;
 use crate::error::{Error, Result};
 
 /// A run file: what it says, not yet what that means.

@@ -6,10 +6,12 @@
 
 mod file;
 mod nearest;
+mod product_words;
 mod refusal;
 mod tree;
 mod words;
 
 pub(crate) use file::RunFile;
+pub(crate) use product_words::ProductWords;
 pub(crate) use refusal::refusal;
-pub(crate) use words::{LIST, ProductWords, Vocabulary};
+pub(crate) use words::{LIST, Vocabulary};

@@ -8,6 +8,7 @@ use clap::{Arg, ArgAction, Args, Command, CommandFactory, ValueHint};
 
 use super::file::{Product, RunFile};
 use super::nearest::nearest;
+use super::product_words::ProductWords;
 use super::tree::{Entry, Value};
 use crate::cli::input::args::{Cli, RunArgs, SurfaceArgs, TileArgs};
 use crate::cli::input::inputs::in_folder;
@@ -34,22 +35,6 @@ const WRITTEN: [&str; 5] = [
     "crossing_report",
     "flat_points",
 ];
-
-/// A product, in the words of a single command.
-#[derive(Debug)]
-pub(crate) struct ProductWords {
-    pub(crate) verb: String,
-    /// The words after the name of the program.
-    pub(crate) words: Vec<OsString>,
-    /// Its number, from 1.
-    pub(crate) number: usize,
-    /// True if one word stands for all files of the first surface.
-    pub(crate) is_of_several: bool,
-    /// Where the product is, for errors.
-    pub(crate) location: String,
-    /// Where each of its keys is, and those of the surface.
-    pub(crate) locations: Vec<(String, String)>,
-}
 
 /// The options of the command line, sorted by where they are in a run file.
 pub(crate) struct Vocabulary {

@@ -1,0 +1,27 @@
+//! What was measured of tiles.
+
+/// How near a tile is to the surface.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct TileReport {
+    /// The vertices.
+    pub vertices: usize,
+    /// The triangles.
+    pub triangles: usize,
+    /// The heights of the surface that it was measured against.
+    pub heights: usize,
+    /// The largest distance of a height, in meters.
+    pub largest: f64,
+    /// The number of heights that are further off than the bound, because steps are too large.
+    pub beyond: usize,
+}
+
+impl TileReport {
+    /// Adds the counts of another tile.
+    pub fn merge(&mut self, other: &TileReport) {
+        self.vertices += other.vertices;
+        self.triangles += other.triangles;
+        self.heights += other.heights;
+        self.largest = self.largest.max(other.largest);
+        self.beyond += other.beyond;
+    }
+}
