@@ -18,7 +18,7 @@ def test_names_of_layers():
 
 def test_a_condition_chooses_breaklines(tmp_path):
     def feature(y, kind):
-        line = {"type": "LineString", "coordinates": [[0.2, y, 9], [1.8, y, 9]]}
+        line = {"type": "LineString", "coordinates": [[0.2, y, 9], [1.8, y, 8.5]]}
         return {"type": "Feature", "properties": {"kind": kind}, "geometry": line}
 
     path = tmp_path / "l.geojson"

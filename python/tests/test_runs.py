@@ -28,7 +28,7 @@ def test_tables_and_files_give_the_results_of_single_functions(folder):
     assert report["files"] == [str(folder / "dem.tif")]
     breakline.dem(folder / "a.xyz", resolution=2.5, max_edge="none", extent=(0, 0, 10, 10), output=folder / "single.tif")
     assert (folder / "dem.tif").read_bytes() == (folder / "single.tif").read_bytes()
-    (row,) = breakline.volume(folder / "a.xyz", plane=1, max_edge="none").rows
+    (row,) = breakline.volume(folder / "a.xyz", plane=1, max_edge="none")
     assert report["products"][1]["report"]["rows"][0]["cut"] == row.cut
 
     with pytest.raises(breakline.FileKeptError, match="dem.tif"):

@@ -49,4 +49,4 @@ def test_what_is_assumed_is_a_warning_and_nonsense_an_error(tmp_path):
             breakline.terrain_tiles(ridge(), output=tmp_path / "no", **{**WHERE, **wrong})
     assert not (tmp_path / "no").exists()
     with pytest.raises(breakline.UsageError, match="crs"):
-        breakline.terrain_tiles(ridge(), output=tmp_path / "no")
+        breakline.terrain_tiles(ridge(), max_edge="none", output=tmp_path / "no")

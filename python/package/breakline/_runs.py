@@ -8,7 +8,7 @@ from typing import Any, Mapping, Optional, Union
 
 from . import _breakline, _inputs
 from ._call import Progress, call
-from ._errors import ArgumentTypeError
+from ._errors import ArgumentTypeError, usage
 
 
 def _plain(value: Any) -> Any:
@@ -17,7 +17,12 @@ def _plain(value: Any) -> Any:
         return os.fspath(value)
     if hasattr(value, "tolist"):
         return value.tolist()
-    raise ArgumentTypeError(f"path: {type(value).__name__} is not a value of a run file")
+    raise usage(
+        f"path: {type(value).__name__} is not a value of a run file",
+        value,
+        "pass texts, numbers, paths, or lists of them",
+        kind=ArgumentTypeError,
+    )
 
 
 def run(

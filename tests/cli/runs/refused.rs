@@ -289,7 +289,7 @@ fn products_do_not_write_what_others_write_or_read() {
         ),
         (
             second("verb = \"drape\"\nlines = \"edge.geojson\"\noutput = \"edge.geojson\"\n"),
-            "edge.geojson: the output is one of the inputs",
+            "edge.geojson: product 2 (site.toml, line 6): the output is one of the inputs",
         ),
         (
             second(
