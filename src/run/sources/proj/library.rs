@@ -313,11 +313,20 @@ impl Object {
         }
     }
 
-    /// Returns the accuracy of the operation in meters, if it is known.
+    /// Returns the accuracy of the operation in meters, if it is known. A conversion, which stays on
+    /// its datum, is exact; PROJ states nothing for it.
     pub(super) fn accuracy(&self) -> Option<f64> {
         // SAFETY: context and object are live.
-        let accuracy = unsafe { proj_coordoperation_get_accuracy(self.context(), self.pointer()) };
-        (accuracy >= 0.0).then_some(accuracy)
+        let (accuracy, kind) = unsafe {
+            (
+                proj_coordoperation_get_accuracy(self.context(), self.pointer()),
+                proj_get_type(self.pointer()),
+            )
+        };
+        match kind {
+            PJ_TYPE_PJ_TYPE_CONVERSION => Some(0.0),
+            _ => (accuracy >= 0.0).then_some(accuracy),
+        }
     }
 
     /// Returns true if the operation ignores a difference of datums.
