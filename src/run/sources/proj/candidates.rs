@@ -25,7 +25,7 @@ fn facts_of(object: &Object, has_heights: bool) -> OperationFacts {
     }
 }
 
-/// Returns a grid with what became of it.
+/// Returns a grid with its state.
 fn found(grid: NeededGrid) -> OperationGrid {
     let state = match &grid.file {
         None => GridState::Missing,
@@ -40,8 +40,8 @@ fn found(grid: NeededGrid) -> OperationGrid {
     }
 }
 
-/// Returns true if PROJ can read a file, or that is not known: it describes only grids of shifts
-/// and of heights, and GeoTIFF may be a grid of another kind.
+/// Returns true unless a file is known to be unreadable. PROJ describes only grids of shifts and of
+/// heights; a GeoTIFF may be a grid of another kind.
 fn is_readable(file: &str) -> bool {
     let extension = file.rsplit('.').next().unwrap_or_default();
     let is_described = matches!(extension, "gtx" | "gsb")
@@ -98,13 +98,13 @@ impl Ends {
     /// Returns the operation from one to the other.
     ///
     /// # Errors
-    /// If PROJ has none, or only the best will do and a grid is missing.
+    /// If PROJ has none, or only the best one is allowed and a grid for it is missing.
     pub(super) fn operation(&self, choice: Choice) -> Result<Object, String> {
         Object::operation(&self.from, &self.to, choice)
     }
 
-    /// Returns all operations, the best first, as if all grids were installed. Those of routes with
-    /// heights transform these, too: ballpark operations, which do not, are left out.
+    /// Returns all operations, the best first, as if all grids were installed. On routes with
+    /// heights, ballpark operations are left out: they do not transform these.
     pub(super) fn candidates(&self, has_heights: bool) -> Vec<OperationFacts> {
         let objects = Object::candidates(&self.from, &self.to, !has_heights);
         objects

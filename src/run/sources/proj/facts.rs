@@ -49,11 +49,11 @@ pub struct OperationGrid {
     pub url: Option<String>,
     /// The file that was found, maybe by the name of an older format.
     pub file: Option<String>,
-    /// What became of it.
+    /// Its state.
     pub state: GridState,
 }
 
-/// What became of a grid.
+/// The state of a grid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum GridState {
     /// It is installed.

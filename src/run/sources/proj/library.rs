@@ -1,4 +1,4 @@
-//! What is used of the library PROJ, safely.
+//! What is used of the library PROJ, with a safe interface.
 
 // The exception of decision 113: the safe bindings of PROJ have no heights, no epochs and no lists
 // of operations, so it is called here, and here only.
@@ -17,10 +17,11 @@ use super::facts::OperationArea;
 /// it; then a file `proj.db` is looked for, as PROJ does.
 const BUILT_IN: &CStr = c"__embedded_proj_db__";
 
-/// A context of PROJ. It belongs to one thread, with all that is made in it.
+/// A context of PROJ. Its pointer keeps it in the thread that made it, with all that is made in it.
 pub(super) struct Library(NonNull<PJ_CONTEXT>);
 
-/// A coordinate system, an operation, or a list of operations that PROJ chooses from.
+/// A coordinate system, an operation, or several operations of which PROJ chooses one for each
+/// point.
 pub(super) struct Object {
     object: NonNull<PJ>,
     library: Rc<Library>,
@@ -52,7 +53,8 @@ impl Library {
     /// If there is no memory for it.
     pub(super) fn open() -> Result<Rc<Self>, String> {
         let create = || {
-            // SAFETY: it has no preconditions.
+            // SAFETY: it takes nothing; null, for no memory, is refused. It copies the context that
+            // all threads share, which `can_read` may change meanwhile: see decision 113.
             let context = NonNull::new(unsafe { proj_context_create() });
             let library = Library(context.ok_or("PROJ could not be started")?);
             // SAFETY: the context is live. Errors are returned, not printed.
@@ -81,13 +83,13 @@ impl Library {
 
     /// Returns the version of PROJ.
     pub(super) fn version() -> String {
-        // SAFETY: the text is static.
+        // SAFETY: the text is static, and PROJ writes the same bytes in each call.
         unsafe { text(proj_info().version) }.unwrap_or_default()
     }
 
     /// Returns what went wrong in the call before.
     fn error(&self) -> String {
-        // SAFETY: the context is live, and owns the text that is returned.
+        // SAFETY: the context is live, and owns the text until its next call.
         let message = unsafe {
             let number = proj_context_errno(self.0.as_ptr());
             text(proj_context_errno_string(self.0.as_ptr(), number))
@@ -105,7 +107,7 @@ impl Drop for Library {
 }
 
 impl Object {
-    /// Takes an object that a function of PROJ has object.
+    /// Returns the owner of an object that a function of PROJ returned; `None` for a null pointer.
     ///
     /// # Safety
     /// The pointer is null, or an object that was made in the context and belongs to the caller.
@@ -250,8 +252,8 @@ impl Object {
     /// # Errors
     /// If the operation has no value there.
     pub(super) fn forward(&self, position: [f64; 4]) -> Result<[f64; 4], String> {
-        // SAFETY: the object is live; all four numbers of a coordinate are numbers, whatever it
-        // stands for.
+        // SAFETY: the object is live. A coordinate is a union of views of the same four numbers,
+        // each of which can be read.
         let moved = unsafe {
             let coordinate = PJ_COORD { v: position };
             proj_trans(self.pointer(), PJ_DIRECTION_PJ_FWD, coordinate).v
@@ -259,7 +261,7 @@ impl Object {
         if moved[..3].iter().all(|number| number.is_finite()) {
             return Ok(moved);
         }
-        // SAFETY: context and object are live; the text belongs to the context.
+        // SAFETY: context and object are live; the context owns the text until its next call.
         let reason = unsafe {
             let number = proj_errno(self.pointer());
             proj_errno_reset(self.pointer());
@@ -288,7 +290,7 @@ impl Object {
 
     /// Returns the operation that was used last.
     pub(super) fn last_used(&self) -> Option<Object> {
-        // SAFETY: the object is live, and what is returned is the caller's.
+        // SAFETY: the object is live, and the caller owns what is returned.
         unsafe {
             let object = proj_trans_get_last_used_operation(self.pointer());
             Object::take(&self.library, object)
@@ -313,8 +315,8 @@ impl Object {
         }
     }
 
-    /// Returns the accuracy of the operation in meters, if it is known. A conversion, which stays on
-    /// its datum, is exact; PROJ states nothing for it.
+    /// Returns the accuracy of the operation in meters, if it is known. A conversion keeps the
+    /// datum and is exact, although PROJ states no accuracy for it.
     pub(super) fn accuracy(&self) -> Option<f64> {
         // SAFETY: context and object are live.
         let (accuracy, kind) = unsafe {
@@ -351,8 +353,8 @@ impl Object {
     pub(super) fn area(&self) -> Option<OperationArea> {
         let [mut west, mut south, mut east, mut north] = [0.0; 4];
         let mut name: *const c_char = ptr::null();
-        // SAFETY: context and object are live, the places for results are, and the text belongs to
-        // the object.
+        // SAFETY: context and object are live, as are the variables for results. The object owns
+        // the text.
         unsafe {
             let is_known = proj_get_area_of_use(
                 self.context(),
@@ -363,7 +365,7 @@ impl Object {
                 &mut north,
                 &mut name,
             );
-            // PROJ's sign of an unknown area is -1000.
+            // PROJ returns -1000 if the area is unknown.
             (is_known == 1 && west >= -360.0).then(|| OperationArea {
                 name: text(name).unwrap_or_default(),
                 west,
@@ -385,8 +387,8 @@ impl Object {
     fn grid(&self, number: c_int) -> Option<NeededGrid> {
         let [mut name, mut full, mut package, mut url] = [ptr::null::<c_char>(); 4];
         let [mut direct, mut open, mut is_there] = [0; 3];
-        // SAFETY: context and object are live, the places for results are, and the texts belong to
-        // the object.
+        // SAFETY: context and object are live, as are the variables for results. The object owns
+        // the texts.
         unsafe {
             let is_known = proj_coordoperation_get_grid_used(
                 self.context(),
@@ -410,8 +412,8 @@ impl Object {
 
     /// Returns the steps of the operation as PROJ writes them, one in each text.
     pub(super) fn steps(&self) -> Vec<String> {
-        // SAFETY: context and object are live, null means "no options", and the text belongs to the
-        // object.
+        // SAFETY: context and object are live, null means "no options", and the object owns the
+        // text.
         let whole = unsafe {
             text(proj_as_proj_string(
                 self.context(),
@@ -441,15 +443,15 @@ impl Drop for Object {
 /// Returns true if PROJ can read a grid, and not only find it: without support for TIFF, it finds
 /// those that it cannot read.
 pub(super) fn can_read(grid: &str) -> bool {
-    /// PROJ asks the context that all threads share.
+    /// PROJ looks for the grid in the context that all threads share.
     static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
     let Ok(name) = CString::new(grid) else {
         return false;
     };
     let _held = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
-    // SAFETY: the text ends with a zero; the shared context, for which null stands, is used by no
-    // other function here, and by one thread at a time. The format is a text of less than eight
-    // bytes and a zero.
+    // SAFETY: the text ends with a zero. Null is the shared context, which one thread at a time
+    // uses here; for `Library::open`, which copies it, see decision 113. The format is a text of
+    // less than eight bytes and a zero.
     unsafe {
         proj_log_level(ptr::null_mut(), PJ_LOG_LEVEL_PJ_LOG_NONE);
         let info = proj_grid_info(name.as_ptr());
@@ -460,12 +462,12 @@ pub(super) fn can_read(grid: &str) -> bool {
 /// Copies a text of PROJ; `None` for a null pointer.
 ///
 /// # Safety
-/// The pointer is null, or a text that ends with a zero and lives as long as the call.
+/// The pointer is null, or a text that ends with a zero and does not change during the call.
 unsafe fn text(pointer: *const c_char) -> Option<String> {
     if pointer.is_null() {
         return None;
     }
-    // SAFETY: it is a text, as the caller ensures.
+    // SAFETY: it is such a text, as the caller ensures.
     let text = unsafe { CStr::from_ptr(pointer) };
     Some(text.to_string_lossy().into_owned())
 }

@@ -1,4 +1,4 @@
-//! What would be done between two systems, and how exact it is.
+//! The operations between two systems, and which of them is used.
 
 use super::facts::OperationFacts;
 use super::options::TransformOptions;
@@ -16,11 +16,11 @@ pub struct Operations {
     pub to: Crs,
     /// True if heights are transformed; else they keep their datum.
     pub heights_are_transformed: bool,
-    /// What is reported when points are transformed.
+    /// The warnings that a transform of points would have.
     pub warnings: Vec<String>,
     /// The operations, the best first, as if all grids were installed.
     pub operations: Vec<OperationFacts>,
-    /// A point that was transformed, if one was asked for.
+    /// The point that was transformed, if one was given.
     pub point: Option<TransformedPoint>,
     /// The version of PROJ.
     pub version: String,
@@ -39,8 +39,8 @@ pub struct TransformedPoint {
     pub steps: Vec<String>,
 }
 
-/// Returns the operations from one system to another, and a point transformed by the one that is
-/// used, if it is asked for. Its height may be `NaN`.
+/// Returns the operations from one system to another. The point `at`, if one is given, is
+/// transformed by the operation that is used there; its height may be `NaN`.
 ///
 /// # Errors
 /// If PROJ does not know one of the systems or no operation between them, or the point lies outside
@@ -100,7 +100,7 @@ pub fn operations(
     })
 }
 
-/// See the one with the feature `proj`.
+/// Returns an error: the operations need the feature `proj`.
 #[cfg(not(feature = "proj"))]
 pub fn operations(
     from: &Crs,
@@ -111,7 +111,7 @@ pub fn operations(
     Err(super::options::needs_proj(from, to))
 }
 
-/// Returns the number of the operation that PROJ uses inside of its area.
+/// Returns the index of the operation that PROJ uses inside of its area.
 #[cfg(feature = "proj")]
 fn first_usable(candidates: &[OperationFacts]) -> Option<usize> {
     let is_usable =

@@ -22,7 +22,7 @@ const KEPT: usize = 8;
 /// An accuracy worse than this, in meters, is reported, because lidar is better.
 const REPORTED: f64 = 0.1;
 
-/// Grids that a message names; there may be dozens, one for each state of a country.
+/// The most grids that a message names; there may be dozens, one for each state of a country.
 const NAMED: usize = 3;
 
 thread_local! {
@@ -32,7 +32,7 @@ thread_local! {
 
 static NEXT: AtomicU64 = AtomicU64::new(0);
 
-/// The transform from one system to another, on one route.
+/// The transform from one system to another on a route; any thread can use it.
 pub(super) struct Operation {
     /// Its key in [`OBJECTS`].
     id: u64,
@@ -93,7 +93,7 @@ impl Operation {
                 Some(kept) if !options.require_grids => {
                     warnings.push(format!("{kept}: {reason}; {}", cure.plain()));
                 }
-                // The heights of both are above an ellipsoid: without an operation they stay.
+                // No warning: both systems count heights from an ellipsoid, so they are kept.
                 None if !options.require_grids => {}
                 _ => {
                     let error = Error::unsupported(format!(
@@ -348,7 +348,7 @@ impl Transform for Operation {
     }
 }
 
-/// Refuses systems that PROJ does not lead from or to.
+/// Returns an error for systems that PROJ transforms nothing from or to.
 fn refuse(from: &Crs, to: &Crs) -> Result<()> {
     for crs in [from, to] {
         if crs.kind == CrsKind::Local {

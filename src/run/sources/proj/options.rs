@@ -1,14 +1,14 @@
-//! How coordinates are transformed, and what is said where they cannot be.
+//! How coordinates are transformed, and the error of builds without PROJ.
 
 #[cfg(not(feature = "proj"))]
 use crate::crs::Crs;
 
-/// How coordinates are transformed. By default with the grids that are installed, and without an
-/// epoch.
+/// How coordinates are transformed. The default uses the grids that are installed, and the epoch
+/// that the source states.
 #[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct TransformOptions {
-    /// It is an error if a grid is missing that the best operation needs, or if heights cannot be
-    /// transformed. By default the next best operation is used, and a warning says so.
+    /// Makes it an error if the best operation needs a grid that is missing, or if heights cannot
+    /// be transformed. By default the next best operation is used, and a warning says so.
     pub require_grids: bool,
     /// The epoch of the coordinates, in years such as 2021.5, for operations that depend on it. By
     /// default the one that the source states, if any.

@@ -13,12 +13,12 @@ pub(super) struct Side {
     scale: f64,
 }
 
-/// From where to where, and what happens to heights.
+/// The systems at both ends as PROJ receives them, and what becomes of heights.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Route {
     pub(super) from: Side,
     pub(super) to: Side,
-    /// What heights are multiplied with. `None`: the operation transforms them.
+    /// What heights are multiplied by; `None` if the operation transforms them.
     pub(super) factor: Option<f64>,
 }
 
@@ -26,7 +26,7 @@ impl Route {
     /// Returns the height that PROJ receives.
     pub(super) fn before(&self, height: f64) -> f64 {
         match self.factor {
-            // In plan, the height between two ellipsoids is left out, on the way back, too.
+            // PROJ gets no height, in both directions: the position in plan does not depend on it.
             Some(_) => 0.0,
             None if height.is_finite() => height / self.from.scale,
             // A line may have vertices without heights.
@@ -66,8 +66,8 @@ pub(super) fn with_heights(from: &Crs, to: &Crs) -> Option<Route> {
     })
 }
 
-/// Returns the route on which heights stay what they are, except for their unit, and a warning
-/// about them if there is one.
+/// Returns the route without a transform of heights between datums, and a warning about heights if
+/// there is one.
 pub(super) fn in_plan(from: &Crs, to: &Crs) -> (Route, Option<String>) {
     if from.kind == CrsKind::Geocentric {
         return above_ellipsoid(from, to);
@@ -81,7 +81,8 @@ pub(super) fn in_plan(from: &Crs, to: &Crs) -> (Route, Option<String>) {
     (route, warning)
 }
 
-/// Geocentric coordinates have no plan: heights above the ellipsoid come with it.
+/// Returns the route of geocentric coordinates. They have no plan of their own: heights above the
+/// ellipsoid come with it.
 fn above_ellipsoid(from: &Crs, to: &Crs) -> (Route, Option<String>) {
     let warning = match to.heights() {
         Heights::Vertical(code) => {
@@ -198,6 +199,7 @@ fn datum_of(crs: &Crs) -> String {
     }
 }
 
+/// Returns true if two vertical systems are known to have the same datum.
 fn have_one_datum(a: u32, b: u32) -> bool {
     let datum = |code| proj_core::lookup_vertical_epsg(code)?.vertical_datum_epsg();
     datum(a).is_some() && datum(a) == datum(b)
