@@ -42,6 +42,24 @@ fn run(folder: &Path, grids: &Path, args: &[&str]) -> Ran {
     }
 }
 
+/// From heights above EGM96 to heights above the ellipsoid.
+const UP: [&str; 2] = ["EPSG:4326+5773", "EPSG:4979"];
+/// From heights above the ellipsoid to heights above EGM96.
+const DOWN: [&str; 2] = ["EPSG:4979", "EPSG:4326+5773"];
+
+const REQUIRED: &[&str] = &["--require-grids"];
+
+/// Transforms a point from one system to another with these options.
+fn transform(folders: [&Path; 2], [from, to]: [&str; 2], at: &[f64], options: &[&str]) -> Ran {
+    let [folder, grids] = folders;
+    let numbers: Vec<String> = at.iter().map(f64::to_string).collect();
+    let mut args = vec!["crs", from, to, "--json"];
+    args.extend(options);
+    args.push("--at");
+    args.extend(numbers.iter().map(String::as_str));
+    run(folder, grids, &args)
+}
+
 /// A geoid that is a plane in longitude and latitude, so that it is the same between its nodes.
 fn geoid(longitude: f64, latitude: f64) -> f64 {
     latitude / 4.0 - longitude / 8.0 + 3.0
@@ -81,22 +99,9 @@ fn heights_are_transformed_by_a_grid_that_is_installed() {
     let (folder, grids) = folders();
     write_geoid(grids.path());
     for [x, y] in [[15.5, 47.0], [-70.25, -33.0], [179.0, 5.125]] {
-        let at = [x, y, 300.0].map(|number: f64| number.to_string());
-        let run = |from, to, height: &str| {
-            let args = [
-                "crs",
-                from,
-                to,
-                "--json",
-                "--require-grids",
-                "--at",
-                &at[0],
-                &at[1],
-                height,
-            ];
-            run(folder.path(), grids.path(), &args)
-        };
-        let up = run("EPSG:4326+5773", "EPSG:4979", "300");
+        let at = [x, y, 300.0];
+        let transform = |systems| transform([folder.path(), grids.path()], systems, &at, REQUIRED);
+        let up = transform(UP);
         let [u, v, height] = moved(&up);
         assert!(
             (height - 300.0 - geoid(x, y)).abs() < 1e-3,
@@ -104,11 +109,11 @@ fn heights_are_transformed_by_a_grid_that_is_installed() {
         );
         assert!((u - x).abs() < 1e-9 && (v - y).abs() < 1e-9);
         assert_eq!(up.json()["heights_are_transformed"], true);
-        let down = run("EPSG:4979", "EPSG:4326+5773", "300");
+        let down = transform(DOWN);
         assert!((moved(&down)[2] - 300.0 + geoid(x, y)).abs() < 1e-3);
-        // Heights of the source in feet.
-        let feet = run("EPSG:4326+ellipsoid", "EPSG:4326+5773", "300");
-        assert_eq!(moved(&feet), moved(&down));
+        // A system in plan, with heights above its ellipsoid.
+        let raised = transform(["EPSG:4326+ellipsoid", "EPSG:4326+5773"]);
+        assert_eq!(moved(&raised), moved(&down));
     }
 }
 
@@ -116,62 +121,35 @@ fn heights_are_transformed_by_a_grid_that_is_installed() {
 fn heights_are_transformed_with_the_plan_and_from_the_center_of_the_earth() {
     let (folder, grids) = folders();
     write_geoid(grids.path());
-    let run = |args: &[&str]| run(folder.path(), grids.path(), args);
-    let [x, y, z] = moved(&run(&[
-        "crs",
-        "EPSG:32633+5773",
-        "EPSG:4979",
-        "--json",
-        "--at",
-        "538012.75499",
-        "5205285.41538",
-        "100",
-    ]));
+    let transform =
+        |systems, at: &[f64]| transform([folder.path(), grids.path()], systems, at, &[]);
+    let [x, y, z] = moved(&transform(
+        ["EPSG:32633+5773", "EPSG:4979"],
+        &[538_012.754_99, 5_205_285.415_38, 100.0],
+    ));
     assert!(
         (x - 15.5).abs() < 1e-9 && (y - 47.0).abs() < 1e-9,
         "{x} {y}"
     );
     assert!((z - 100.0 - geoid(15.5, 47.0)).abs() < 1e-3);
-    let [.., z] = moved(&run(&[
-        "crs",
-        "EPSG:4978",
-        "EPSG:32633+5773",
-        "--json",
-        "--at",
-        "4194423.0",
-        "1162702.0",
-        "4647245.0",
-    ]));
+    let [.., z] = moved(&transform(
+        ["EPSG:4978", "EPSG:32633+5773"],
+        &[4_194_423.0, 1_162_702.0, 4_647_245.0],
+    ));
     let wanted = 537.325_021_646_9 - geoid(15.493_474_331_5, 47.067_133_849);
     assert!((z - wanted).abs() < 1e-3, "{z} instead of {wanted}");
     // A point without a height has none afterwards.
-    let found = run(&[
-        "crs",
-        "EPSG:32633+5773",
-        "EPSG:4979",
-        "--json",
-        "--at",
-        "500000",
-        "5200000",
-    ])
-    .json();
+    let systems = ["EPSG:32633+5773", "EPSG:4979"];
+    let found = transform(systems, &[500_000.0, 5_200_000.0]).json();
     assert!(found["point"]["to"][2].is_null());
 }
 
 #[test]
 fn a_missing_grid_is_named_and_heights_stay_or_it_is_an_error() {
     let (folder, grids) = folders();
-    let args = [
-        "crs",
-        "EPSG:4326+5773",
-        "EPSG:4979",
-        "--json",
-        "--at",
-        "15.5",
-        "47",
-        "300",
-    ];
-    let kept = run(folder.path(), grids.path(), &args);
+    let at = [15.5, 47.0, 300.0];
+    let transform = |options: &[&str]| transform([folder.path(), grids.path()], UP, &at, options);
+    let kept = transform(&[]);
     assert_eq!(moved(&kept), [15.5, 47.0, 300.0]);
     let found = kept.json();
     assert_eq!(found["heights_are_transformed"], false);
@@ -190,11 +168,7 @@ fn a_missing_grid_is_named_and_heights_stay_or_it_is_an_error() {
     ] {
         assert!(kept.stderr.contains(part), "{part}: {}", kept.stderr);
     }
-    let refused = run(
-        folder.path(),
-        grids.path(),
-        &[&args[..], &["--require-grids"]].concat(),
-    );
+    let refused = transform(REQUIRED);
     assert_eq!(refused.code, Some(1), "{}", refused.stderr);
     for part in [
         "error: heights cannot be transformed",
@@ -209,28 +183,16 @@ fn a_missing_grid_is_named_and_heights_stay_or_it_is_an_error() {
 fn what_is_not_a_grid_is_not_used() {
     let (folder, grids) = folders();
     std::fs::write(grids.path().join(EGM96), "not a grid").unwrap();
-    let args = [
-        "crs",
-        "EPSG:4326+5773",
-        "EPSG:4979",
-        "--json",
-        "--at",
-        "15.5",
-        "47",
-        "300",
-    ];
-    let kept = run(folder.path(), grids.path(), &args);
+    let at = [15.5, 47.0, 300.0];
+    let transform = |options: &[&str]| transform([folder.path(), grids.path()], UP, &at, options);
+    let kept = transform(&[]);
     assert_eq!(moved(&kept), [15.5, 47.0, 300.0]);
     assert!(
         kept.stderr.contains("heights keep their datum"),
         "{}",
         kept.stderr
     );
-    let refused = run(
-        folder.path(),
-        grids.path(),
-        &[&args[..], &["--require-grids"]].concat(),
-    );
+    let refused = transform(REQUIRED);
     assert_eq!(refused.code, Some(1), "{}", refused.stderr);
 }
 
@@ -239,17 +201,8 @@ fn an_old_database_beside_the_grids_is_not_used() {
     let (folder, grids) = folders();
     write_geoid(grids.path());
     std::fs::write(grids.path().join("proj.db"), "not a database").unwrap();
-    let args = [
-        "crs",
-        "EPSG:4326+5773",
-        "EPSG:4979",
-        "--json",
-        "--at",
-        "15.5",
-        "47",
-        "300",
-    ];
-    let [.., height] = moved(&run(folder.path(), grids.path(), &args));
+    let at = [15.5, 47.0, 300.0];
+    let [.., height] = moved(&transform([folder.path(), grids.path()], UP, &at, &[]));
     assert!(
         (height - 300.0 - geoid(15.5, 47.0)).abs() < 1e-3,
         "{height}"
@@ -362,19 +315,9 @@ fn egm96_is_what_nga_has_published() {
         (38.625_473_0, -0.000_500_0, 50.066),
         (-0.466_744_0, 0.002_300_0, 17.329),
     ] {
-        let at = [longitude, latitude].map(|number: f64| number.to_string());
-        let args = [
-            "crs",
-            "EPSG:4326+5773",
-            "EPSG:4979",
-            "--json",
-            "--require-grids",
-            "--at",
-            &at[0],
-            &at[1],
-            "0",
-        ];
-        let [.., height] = moved(&run(folder.path(), Path::new(INSTALLED), &args));
+        let at = [longitude, latitude, 0.0];
+        let folders = [folder.path(), Path::new(INSTALLED)];
+        let [.., height] = moved(&transform(folders, UP, &at, REQUIRED));
         assert!(
             (height - wanted).abs() < 0.1,
             "{height} instead of {wanted} at {at:?}"
@@ -429,18 +372,9 @@ fn egm96_is_interpolated_between_the_nodes_of_the_grid() {
         [-100.3, 40.05],
         [2.3, 48.85],
     ] {
-        let at = [x, y].map(|number: f64| number.to_string());
-        let args = [
-            "crs",
-            "EPSG:4326+5773",
-            "EPSG:4979",
-            "--json",
-            "--at",
-            &at[0],
-            &at[1],
-            "250",
-        ];
-        let [.., height] = moved(&run(folder.path(), Path::new(INSTALLED), &args));
+        let at = [x, y, 250.0];
+        let folders = [folder.path(), Path::new(INSTALLED)];
+        let [.., height] = moved(&transform(folders, UP, &at, &[]));
         let wanted = 250.0 + grid.height(x, y);
         assert!(
             (height - wanted).abs() < 1e-3,
