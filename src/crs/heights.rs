@@ -1,6 +1,6 @@
 //! What the heights of a system are counted from.
 
-use super::wkt_read::VERTICAL;
+use super::wkt_read::{METADATA, VERTICAL};
 use super::wkt_tree::Node;
 use super::{Crs, CrsKind, registry};
 
@@ -9,13 +9,13 @@ use super::{Crs, CrsKind, registry};
 pub enum Heights {
     /// The system has none.
     None,
-    /// The ellipsoid.
+    /// The ellipsoid of the system in plan.
     Ellipsoid,
     /// The datum of the vertical system with this EPSG code.
     Vertical(u32),
-    /// A datum that only the text of the system names.
+    /// A vertical datum that only the WKT of the system names.
     Named,
-    /// Nothing that is stated: only the unit is.
+    /// It is not stated; only the unit of heights is.
     Unknown,
 }
 
@@ -26,6 +26,7 @@ impl Crs {
             return Heights::Ellipsoid;
         }
         if let Some(code) = self.vertical_epsg {
+            // The text may define what the registry does not have.
             return match (registry::find_vertical(code), &self.wkt) {
                 (None, Some(_)) => Heights::Named,
                 (None, None) => Heights::Unknown,
@@ -43,15 +44,9 @@ impl Crs {
             };
         }
         // A system with three axes has one code for all of them.
-        match self.epsg.and_then(registry::find) {
-            Some(found)
-                if found
-                    .vertical
-                    .as_ref()
-                    .is_some_and(|part| part.code.is_none()) =>
-            {
-                Heights::Ellipsoid
-            }
+        let found = self.epsg.and_then(registry::find);
+        match found.and_then(|found| found.vertical) {
+            Some(part) if part.code.is_none() => Heights::Ellipsoid,
             _ => Heights::Unknown,
         }
     }
@@ -71,12 +66,10 @@ impl Crs {
         self
     }
 
-    /// Returns the epoch of the coordinates, in years, that the text of the system states.
+    /// Returns the epoch of the coordinates that the WKT of the system states, in years.
     pub fn epoch(&self) -> Option<f64> {
         let nodes = Node::parse_all(self.wkt.as_deref()?).ok()?;
-        let metadata = nodes
-            .iter()
-            .find(|node| node.keyword == "COORDINATEMETADATA")?;
+        let metadata = nodes.iter().find(|node| node.keyword == METADATA)?;
         metadata
             .find(&["EPOCH"])?
             .number(0)
@@ -84,12 +77,13 @@ impl Crs {
     }
 
     /// Returns true if the authority states latitude or northing first; `None` if that is not
-    /// known. Coordinates are easting first here, whatever it states.
+    /// known. Coordinates here are easting or longitude first in any case.
     pub fn is_northing_first(&self) -> Option<bool> {
         registry::is_northing_first(self.epsg?)
     }
 }
 
+/// Returns the first vertical system in a text.
 fn vertical(node: &Node) -> Option<&Node> {
     if VERTICAL.contains(&node.keyword.as_str()) {
         return Some(node);

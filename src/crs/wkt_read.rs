@@ -14,7 +14,7 @@ const GEOCENTRIC: &[&str] = &["GEOCCS"];
 const LOCAL: &[&str] = &["LOCAL_CS", "ENGCRS", "ENGINEERINGCRS", "FITTED_CS"];
 const COMPOUND: &[&str] = &["COMPD_CS", "COMPOUNDCRS"];
 const BOUND: &[&str] = &["BOUNDCRS"];
-const METADATA: &str = "COORDINATEMETADATA";
+pub(super) const METADATA: &str = "COORDINATEMETADATA";
 pub(super) const VERTICAL: &[&str] = &["VERT_CS", "VERTCS", "VERTCRS", "VERTICALCRS"];
 const BASE: &[&str] = &[
     "GEOGCS",
