@@ -167,8 +167,8 @@ pub fn probe(target: &Path) -> Result<()> {
     probe().map_err(|e: Error| e.in_file(target))
 }
 
-/// Returns the path of the file that is written for a target: symbolic links are followed, also if
-/// there is no file yet where they lead.
+/// Returns the path of the file that is written for a target. Symbolic links are followed, even if
+/// the file they name does not exist yet.
 pub(crate) fn followed(target: &Path) -> std::path::PathBuf {
     match TargetKind::of(target) {
         Ok(TargetKind::File(path)) => path,

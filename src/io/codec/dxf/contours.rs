@@ -121,7 +121,7 @@ fn layers() -> Vec<DxfLayer> {
     .to_vec()
 }
 
-/// Returns a warning about a system, for which there is no place.
+/// Returns a warning that the coordinate system is not written.
 fn without_system(crs: Option<&Crs>) -> Option<String> {
     crs.map(|crs| format!("a drawing has no coordinate system: {crs} is not written"))
 }
