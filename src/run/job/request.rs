@@ -134,7 +134,7 @@ pub(super) fn add_targets(options: &mut Options, targets: &Targets, tiles: &Tile
     listed.add(&[Setting::Overwrite], existing);
     listed.add(&[Setting::CrossingReport], crossings);
     listed.put(REPLACED, replaced);
-    // No job has labels: the lists of those that began without this option stay.
+    // Jobs that began before this option keep their lists.
     if labels.is_some() {
         listed.put(LABELS, labels);
     }

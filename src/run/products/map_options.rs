@@ -27,7 +27,7 @@ pub struct MapOptions {
     pub index_every: Option<u32>,
     /// Writes the areas between the lines instead of the lines.
     pub bands: bool,
-    /// Writes lines and labels without heights, which are attributes only.
+    /// Writes lines and labels without heights: only their attributes have these.
     pub without_heights: bool,
     /// Places labels on the index contours, or on all lines if none are marked.
     pub labels: Option<LabelTops>,
@@ -60,8 +60,8 @@ impl MapOptions {
         *self != MapOptions::default()
     }
 
-    /// Calls a function with the name and the value of each option that is not left at its default;
-    /// of the file of labels, that there is one.
+    /// Calls a function with the setting and the value of each option that is not left at its
+    /// default. The value for the file of labels is `true`: targets list its path.
     pub(crate) fn list(&self, add: &mut dyn FnMut(Setting, &dyn Debug)) {
         let MapOptions {
             preset,

@@ -39,7 +39,7 @@ impl Verb for ContourOptions {
         add(Setting::Interval, interval);
         add(Setting::Base, base);
         add(Setting::Levels, levels);
-        // The lists of jobs that began before there were maps stay.
+        // Only what is given, so that jobs that began before there were maps keep their lists.
         map.list(add);
     }
 

@@ -132,7 +132,7 @@ impl Targets {
                     .iter()
                     .find(|own| is_same(&own.path, &labels.path))
                 {
-                    // One name for one file, however it is written.
+                    // One spelling for one file: writers compare paths.
                     Some(own)
                         if product == Product::Contours && contours::takes_labels(&labels.path) =>
                     {
@@ -351,7 +351,7 @@ pub(crate) fn resolve<F: Copy>(
     })
 }
 
-/// What to do about outputs that are one file.
+/// The cure for outputs that are one file.
 const OTHER_NAME: &str = "give one of them another name";
 
 #[cold]
@@ -440,7 +440,7 @@ pub(crate) fn identity(path: &Path) -> PathBuf {
         let followed = io::followed(file);
         let folder = folder_of(&followed).canonicalize();
         match folder.ok().zip(followed.file_name()) {
-            // A link to a file that is not there yet.
+            // A link to a file that does not exist yet.
             Some((folder, name)) if followed != file => folder.join(name),
             _ => file.to_path_buf(),
         }
@@ -495,7 +495,7 @@ fn extension_of(name: &str) -> String {
     }
 }
 
-/// What to do if a product reads what another one would write.
+/// The cure for a product that reads what another one would write.
 #[cfg(feature = "cli")]
 const OF_ANOTHER: &str = "give it another name: products do not read what others of their run make; \
     that takes a second run";
@@ -514,7 +514,7 @@ pub(crate) struct ProductFiles {
 pub(crate) fn require_apart(products: &[ProductFiles]) -> std::result::Result<(), (usize, Error)> {
     let mut written: HashSet<PathBuf> = HashSet::new();
     for (number, product) in products.iter().enumerate() {
-        // Of equal names one would be missing at the end.
+        // A link is not followed here: of two products with one name, only one would be left.
         let absolute =
             |path: &PathBuf| identity(folder_of(path)).join(path.file_name().unwrap_or_default());
         let own: HashSet<PathBuf> = product.writes.iter().map(absolute).collect();
@@ -523,7 +523,7 @@ pub(crate) fn require_apart(products: &[ProductFiles]) -> std::result::Result<()
         };
         if let Some(path) = product.writes.iter().find(again) {
             let error = Error::usage("another product writes this file, too").in_file(path);
-            return Err((number, error.cure("give one of them another name")));
+            return Err((number, error.cure(OTHER_NAME)));
         }
         written.extend(own);
         written.extend(product.writes.iter().map(|path| identity(path)));
