@@ -1,4 +1,4 @@
-//! Several products of surfaces that they share, written together.
+//! Several products that share surfaces, written together.
 
 use std::path::PathBuf;
 
@@ -16,6 +16,8 @@ use crate::io::OutputSet;
 use crate::terrain::Method;
 
 /// Surfaces that several products are made of. Each is built or read once, when it is first needed.
+///
+/// A surface is named by the number that [`add`](Self::add) returned; methods panic for any other.
 #[derive(Debug, Default)]
 pub struct SharedSurfaces {
     memory: Option<u64>,
@@ -27,12 +29,12 @@ pub struct SharedSurfaces {
 struct SharedSurface {
     request: SurfaceRequest,
     method: Method,
-    /// Why it is built in one piece, if it has to be.
+    /// The reason, if it has to be built in one piece.
     whole: Option<Error>,
     opened: Option<SurfaceProduct>,
 }
 
-/// About what a surface will need.
+/// An estimate of what a surface will need.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SurfaceEstimate {
     /// The points that are used, as far as headers say.
@@ -44,8 +46,8 @@ pub struct SurfaceEstimate {
 }
 
 impl SharedSurfaces {
-    /// No surfaces yet. They use this much memory together, or half of what is free if it is
-    /// `None`.
+    /// Returns a list without surfaces. Those that are built share this much memory, in bytes; if
+    /// it is `None`, each takes up to half of what is free.
     pub fn new(memory: Option<u64>) -> Self {
         SharedSurfaces {
             memory,
@@ -54,19 +56,19 @@ impl SharedSurfaces {
     }
 
     /// Adds the surface of a request for heights by a method, unless it is there, and returns its
-    /// number. `whole` is why it has to be built in one piece, if it has to.
+    /// number. `whole` is the reason if it has to be built in one piece.
     pub fn add(&mut self, request: &SurfaceRequest, method: Method, whole: Option<Error>) -> usize {
         let key = of_all_points(request);
-        let needs_all = needs_all(request, method);
+        let has_all = needs_all(request, method);
         let same = self.list.iter().position(|known| {
             key.is_some()
                 && of_all_points(&known.request) == key
-                && needs_all == self::needs_all(&known.request, known.method)
+                && has_all == needs_all(&known.request, known.method)
         });
         let number = same.unwrap_or_else(|| {
             self.list.push(SharedSurface {
                 request: request.clone(),
-                method: if needs_all { method } else { Method::Linear },
+                method: if has_all { method } else { Method::Linear },
                 whole: None,
                 opened: None,
             });
@@ -98,7 +100,7 @@ impl SharedSurfaces {
         self.list[number].request.files()
     }
 
-    /// Returns about what a surface will need; `None` if it is read from a file.
+    /// Returns an estimate of what a surface will need; `None` if it is read from a file.
     ///
     /// # Errors
     /// If a file of points cannot be opened.
@@ -140,7 +142,7 @@ impl SharedSurfaces {
             }
             None => open_surface(request, *method, memory, context)?,
         };
-        // Verbs read it, and tables are written of it.
+        // The report takes it, but verbs and tables need it, too.
         let built = product.built.clone();
         let report = SurfaceReport::take(&mut product)?;
         product.built = built;
@@ -166,8 +168,8 @@ impl SharedSurfaces {
     }
 }
 
-/// Returns a text that is the same for requests of one surface, whether or not the points are kept
-/// that water replaced; `None` if requests with points in memory are never taken for one another.
+/// Returns a text that is equal for requests of one surface, also if only one of them keeps the
+/// points that water replaced; `None` for points in memory, which have no text.
 fn of_all_points(request: &SurfaceRequest) -> Option<String> {
     let mut request = request.clone();
     if let Source::Points(points) = &mut request.source {
@@ -231,8 +233,8 @@ impl SharedProduct {
         self.request.verb.method()
     }
 
-    /// Returns why the surface has to be built in one piece: tables are written of how it was
-    /// built, or its vertices and triangles, whose order in a TIN in parts differs.
+    /// Returns the reason if the surface has to be built in one piece: a table of how it was built
+    /// is written, or its vertices and triangles, which have another order in a TIN in parts.
     pub fn needs_whole(&self) -> Option<Error> {
         let verb = &self.request.verb;
         write::refused(&self.targets).or_else(|| {
@@ -255,7 +257,7 @@ impl SharedProduct {
         files
     }
 
-    /// Writes it of a surface, together with the other files of a set.
+    /// Makes it of a surface, and adds its files to a set.
     ///
     /// # Errors
     /// If it cannot be made or written, or the run is canceled. Nothing of the set appears then.

@@ -32,7 +32,7 @@ static TILES: FolderKind = FolderKind {
     has: may_be_of_tiles,
 };
 
-/// Returns true if a file has the path of one in a folder of tiles.
+/// Returns true for the path of a file, in its folder, if folders of tiles have such files.
 fn may_be_of_tiles(path: &Path) -> bool {
     let Some(text) = path.to_str() else {
         return false;
@@ -221,7 +221,7 @@ fn write_levels(
     let work = journal.start(Stage::WritingTiles, Size::Items(count as u64))?;
     let [tiles, bytes] = [(); 2].map(|()| AtomicU64::new(0));
     let heights = pyramid.heights();
-    // Of the level above, and the depth of the deepest skirt.
+    // What was measured of the level above, and the depth of the deepest skirt so far.
     let skirts = Mutex::new((Coarser::default(), 0.0_f64));
     let locked = || skirts.lock().unwrap_or_else(PoisonError::into_inner);
     // Servers send GLB as it is.
@@ -280,7 +280,7 @@ fn write_levels(
     Ok((levels, deepest))
 }
 
-/// Servers and viewers expect quantized meshes to be compressed.
+/// Returns bytes compressed by gzip, as servers and viewers expect quantized meshes.
 fn compressed(bytes: &[u8]) -> Result<Vec<u8>> {
     let mut gzip = GzEncoder::new(Vec::new(), Compression::new(9));
     gzip.write_all(bytes)?;
@@ -341,7 +341,8 @@ impl Layout {
         }
     }
 
-    /// States what was measured, and how deep the lowest skirt hangs.
+    /// Changes the bounds and the ranges of heights that are stated to what was measured. `deepest`
+    /// is the depth of the deepest skirt, in meters.
     fn measured(&mut self, pyramid: &Pyramid, levels: &[LevelReport], deepest: f64) {
         let Layout::Tiles3d { roots } = self else {
             return;
@@ -390,7 +391,7 @@ impl Layout {
     }
 }
 
-/// What was measured of the next coarser level, by which skirts are as deep as a gap can be.
+/// What was measured of the next coarser level: with it, skirts become as deep as a gap can be.
 #[derive(Debug, Clone, Copy, Default)]
 struct Coarser {
     /// See [`LevelReport::within`].
@@ -402,20 +403,23 @@ struct Coarser {
 }
 
 impl Coarser {
-    /// Returns the depth of the skirts of a tile: it and one of the coarser level are within what
-    /// was measured of the surface, and no further from each other than any heights, as far as the
-    /// earth is not curved in between.
+    /// Returns the depth of the skirts of a tile, in meters: the largest gap to a tile of the
+    /// coarser level. Both are within what was measured of the surface. Also, they are no further
+    /// from each other than the lowest and the highest height, apart from the curve of the earth
+    /// and steps.
     fn skirt(self, level: &Level, report: &TileReport, [low, high]: [f64; 2]) -> f64 {
         let sum = level.within(report) + self.within;
         sum.min(high - low + level.curve + self.curve + level.step + self.step)
     }
 }
 
+/// Returns the tiles of each level, the coarsest first.
 fn tiles_of(pyramid: &Pyramid) -> Vec<&[TilePosition]> {
     let levels = pyramid.levels().iter();
     levels.map(|level| level.tiles.as_slice()).collect()
 }
 
+/// Returns the numbers of a tile as paths have them.
 fn numbers(TilePosition { level, column, row }: TilePosition) -> String {
     format!("{level}/{column}/{row}")
 }
@@ -424,8 +428,9 @@ fn numbers(TilePosition { level, column, row }: TilePosition) -> String {
 struct Placing {
     /// `None` if they are in the system of the tiles.
     transform: Option<Box<dyn Transform>>,
-    /// Meters in a unit of height, and what is added to heights.
+    /// Meters in a unit of height.
     factor: f64,
+    /// What is added to heights, in meters.
     offset: f64,
 }
 
@@ -433,7 +438,8 @@ impl Placing {
     fn new(crs: Option<&Crs>, options: &TerrainTilesOptions, journal: &Journal) -> Result<Self> {
         let Some(crs) = crs else {
             return Err(Error::usage(
-                "the coordinate system of the surface is not known: where it is on the earth, neither",
+                "the coordinate system of the surface is not known, so its position on the earth \
+                 is unknown",
             )
             .cure(wording!["state it with ", Setting::Crs.text("EPSG:CODE")]));
         };
@@ -443,7 +449,7 @@ impl Placing {
                 journal.add(Notice::HeightsAboveEllipsoid(heights));
             }
         }
-        // Heights are converted here: to PROJ they are nothing.
+        // Heights get their unit and offset here, so PROJ transforms the plan alone.
         let plan = Crs {
             vertical_epsg: None,
             vertical_unit: None,

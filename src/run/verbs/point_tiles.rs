@@ -1,7 +1,8 @@
 //! Points in tiles: a file for each square of the plan.
 //!
-//! Records go through a file without a name, sorted by tiles as far as the memory allows, and one
-//! tile after the other is then written: memory and open files do not grow with the tiles.
+//! Records are sorted by tiles in memory, and moved to a file without a name whenever they take too
+//! much of it. Then one tile after the other is written, so that memory and open files do not grow
+//! with the number of tiles.
 
 use std::collections::{BTreeMap, HashSet};
 use std::fs::File;
@@ -10,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use super::targets::{Existing, identity};
-use crate::data::{Bounds, PointBatch, PointInfo, PointSink, PointSummary};
+use crate::data::{Bounds, PointBatch, PointFlags, PointInfo, PointSink, PointSummary};
 use crate::error::{Error, Result, Setting, wording};
 use crate::io::las::Detail;
 use crate::io::{OutputSet, points, require_absent};
@@ -18,7 +19,7 @@ use crate::run::context::units::Units;
 use crate::run::context::{Context, Stage};
 use crate::run::products::points::{PointsReport, PointsRequest, transfer};
 
-/// Bytes of records that wait in memory, of all tiles together.
+/// The most bytes of records in memory, of all tiles together.
 const MOST_WAITING: usize = 1 << 26;
 
 /// The most tiles of a run.
@@ -27,13 +28,14 @@ const MOST_TILES: usize = 100_000;
 /// Tiles of points to write.
 #[derive(Debug, Clone)]
 pub struct PointTiles {
-    /// The folder for the files, which is created if it does not exist; its own folder does.
+    /// The folder for the files. It is created if it does not exist, in a folder that exists.
     pub folder: PathBuf,
     /// The side of a tile. Tiles begin at multiples of it.
     pub size: PlanLength,
-    /// Up to this distance outside of a tile, points of others are in its file, too.
+    /// The file of a tile also has the points of others that are no further from it than this,
+    /// along each axis.
     pub buffer: PlanLength,
-    /// Flags the points of the buffer as withheld; otherwise they are as they were.
+    /// Flags the points of the buffer as withheld; otherwise their flags are kept.
     pub flags_buffer: bool,
     /// What to do with files that exist.
     pub existing: Existing,
@@ -68,6 +70,9 @@ impl FromStr for PlanLength {
 
 impl PlanLength {
     /// Returns the length in the units of coordinates.
+    ///
+    /// # Errors
+    /// If it is in meters, and coordinates are angles.
     fn of(self, units: &Units, setting: Setting) -> Result<f64> {
         match self {
             PlanLength::Units(length) => Ok(length),
@@ -84,20 +89,22 @@ impl PlanLength {
     }
 }
 
-/// Writes the selected points of files to a file for each tile that has any, all or none, with the
-/// names `X_Y` of their lower left corners and the extension of the first file: LAS or LAZ.
+/// Writes the selected points of files to a file for each tile that has any. Returns the report,
+/// which counts each point once, and the number of tiles. All files appear together, or none.
 ///
-/// A point belongs to one tile, with the lower and left borders. In a tile, points have the order
-/// of the files; those of the buffer are among them. Records are copied as in
-/// [`write_points`](crate::run::write_points). The result counts each point once.
+/// A file has the name `X_Y` of the tile's lower left corner, and is LAS if the first input is,
+/// else LAZ. A point belongs to one tile: a tile has its lower and left borders. In a tile, points
+/// have the order of the inputs, and those of the buffer are among them. Records are copied as in
+/// [`write_points`](crate::run::write_points).
 ///
-/// Needs memory for 64 MB of records, and the disk of the folder for those of all points,
-/// uncompressed.
+/// # Complexity
+/// O(n log t) for n points, each as often as files have it, and t tiles. 64 MB of records are in
+/// memory, and those of all points, uncompressed, on the disk of the folder.
 ///
 /// # Errors
-/// Those of [`write_points`](crate::run::write_points); if points are of other files than LAS
-/// and LAZ; if the buffer is wider than a tile, or there are more than 100 000 tiles; if a file
-/// exists and is not to be replaced, or is an input.
+/// Those of [`write_points`](crate::run::write_points); if points are from files other than LAS and
+/// LAZ; if a length is in meters and coordinates are angles; if the buffer is wider than a tile, or
+/// there are more than 100 000 tiles; if a file exists and is not to be replaced, or is an input.
 pub fn write_point_tiles(
     request: &PointsRequest,
     tiles: &PointTiles,
@@ -132,10 +139,12 @@ pub fn write_point_tiles(
 struct Tile {
     /// The points that belong to it.
     own: u64,
-    /// Records that wait, all of one source.
+    /// Records in memory, all of one source.
     waiting: Vec<u8>,
+    /// The number of that source.
     source: usize,
-    /// Where its records are: the source, the position and the bytes.
+    /// Where its other records are in the file without a name: the source, the position and the
+    /// number of bytes.
     parts: Vec<(usize, u64, usize)>,
 }
 
@@ -147,13 +156,16 @@ struct Sorted<'a> {
     written: &'a mut usize,
     context: &'a Context<'a>,
     extension: &'static str,
+    /// The side of a tile and the width of the buffer, in the units of the coordinates.
     size: f64,
     buffer: f64,
     infos: Vec<PointInfo>,
-    /// What [`next_source`](PointSink::next_source) was called with.
+    /// The sources so far, in order.
     sources: Vec<PointInfo>,
     by_corner: BTreeMap<[i64; 2], Tile>,
+    /// The bytes of records in memory, of all tiles.
     waiting: usize,
+    /// The file without a name, and its length in bytes.
     scratch: File,
     scratch_bytes: u64,
 }
@@ -222,8 +234,8 @@ impl<'a> Sorted<'a> {
         Ok(if is_beyond { number + 1.0 } else { number } as i64)
     }
 
-    /// Returns the numbers of the tiles along an axis whose files have a coordinate, and that of
-    /// the one that it belongs to.
+    /// Returns the numbers of the tiles along an axis whose files have a coordinate, by their
+    /// buffers too, and the number of the tile that it belongs to.
     fn numbers(&self, x: f64) -> Result<(std::ops::RangeInclusive<i64>, i64)> {
         let own = self.number(x)?;
         let is_near = |number: i64| {
@@ -242,6 +254,7 @@ impl<'a> Sorted<'a> {
         Ok((first..=last, own))
     }
 
+    /// Adds a record to a tile, which may be that of the point or one whose buffer has it.
     fn add(
         &mut self,
         corner: [i64; 2],
@@ -265,8 +278,10 @@ impl<'a> Sorted<'a> {
         tile.own += u64::from(is_own);
         self.waiting += record.len();
         if !is_own && self.tiles.flags_buffer {
-            // Formats from 6 on have flags of their own.
-            let withheld = if point_format < 6 { 0x80 } else { 0x04 };
+            // Byte 15 has the class below the flags up to format 5, and from format 6 on flags
+            // alone.
+            let shift = if point_format < 6 { 5 } else { 0 };
+            let withheld = PointFlags::WITHHELD << shift;
             tile.waiting[start + 15] |= withheld;
         }
         if self.waiting >= MOST_WAITING {
@@ -275,7 +290,7 @@ impl<'a> Sorted<'a> {
         Ok(())
     }
 
-    /// Moves all records that wait to the file without a name.
+    /// Moves all records in memory to the file without a name.
     fn keep_all(&mut self) -> Result<()> {
         for tile in self.by_corner.values_mut() {
             keep(
@@ -330,7 +345,7 @@ impl<'a> Sorted<'a> {
             batch.records.resize(bytes, 0);
             self.scratch.seek(SeekFrom::Start(position))?;
             self.scratch.read_exact(&mut batch.records)?;
-            // The records are all that LAS takes.
+            // The writer of LAS copies records; of columns it needs only the length.
             let count = bytes.checked_div(stride(info)).unwrap_or(0);
             for column in [&mut batch.x, &mut batch.y, &mut batch.z] {
                 column.resize(count, 0.0);
@@ -343,7 +358,7 @@ impl<'a> Sorted<'a> {
     }
 }
 
-/// Moves the records of a tile that wait to a file.
+/// Moves the records of a tile from memory to a file.
 fn keep(tile: &mut Tile, source: usize, to: &mut File, position: &mut u64) -> Result<()> {
     if tile.waiting.is_empty() {
         return Ok(());
@@ -355,7 +370,7 @@ fn keep(tile: &mut Tile, source: usize, to: &mut File, position: &mut u64) -> Re
     Ok(())
 }
 
-/// Returns the bytes of a record of a source; 0 if it has none.
+/// Returns the number of bytes of a record of a source; 0 if it has no records.
 fn stride(info: &PointInfo) -> usize {
     info.head
         .as_ref()
@@ -378,7 +393,7 @@ impl PointSink for Sorted<'_> {
         };
         let (length, point_format) = (stride(info), head.point_format);
         for record in batch.records.chunks_exact(length) {
-            // Where the record is, not where the point was before it was rounded.
+            // The position in the record, which is rounded: readers of the tile see that one.
             let step = |at: usize| {
                 let bytes = record.get(at..).and_then(|rest| rest.first_chunk());
                 bytes.map_or(0, |bytes| i32::from_le_bytes(*bytes))
@@ -401,7 +416,7 @@ impl PointSink for Sorted<'_> {
         self.require_room()?;
         let mut summary = PointSummary::default();
         for (corner, tile) in std::mem::take(&mut self.by_corner) {
-            // A file of a buffer alone is of no tile.
+            // Points of a buffer alone make no file.
             if tile.own > 0 {
                 let path = self.path(corner);
                 let bounds = self
