@@ -1,5 +1,5 @@
 //! The table of formats. Most rows override a few fields of another row: of [`ROW`], or of one that
-//! [`raster`], [`vector`] or [`plane`] returns.
+//! [`raster`], [`vector`], [`mesh`] or [`plane`] returns.
 
 use super::format::{
     Content, Format, FormatReader, Holding, KnownBy, Magic, NOT_WRITTEN, PointWriter, Sink,
@@ -146,6 +146,24 @@ const fn vector(
     }
 }
 
+const fn mesh(
+    name: &'static str,
+    noun: &'static str,
+    extensions: &'static [&'static str],
+    magic: &'static [Magic],
+) -> Format {
+    Format {
+        name,
+        noun,
+        extensions,
+        magic,
+        content: Content::Mesh,
+        holds: SURFACE,
+        cure: AS_MESH,
+        ..ROW
+    }
+}
+
 /// Returns the row for one of Triangle's files.
 const fn plane(
     name: &'static str,
@@ -269,13 +287,7 @@ pub static FORMATS: &[Format] = &[
         ..ROW
     },
     Format {
-        name: "shapefile",
-        noun: "a shapefile",
-        extensions: &["shp"],
-        // File code 9994, big endian.
-        magic: &[Magic::At(0, &[0, 0, 0x27, 0x0a])],
         known_by: KnownBy::Name,
-        content: Content::Layer,
         holds: SHAPES_AND_CRS,
         beside: &["shx", "dbf", "prj", "cpg"],
         parts: &["shx", "dbf", "prj", "cpg", "qpj", "qix", "sbn", "sbx"],
@@ -290,27 +302,28 @@ pub static FORMATS: &[Format] = &[
             )
         },
         help: "lines, polygons and points; contours; draped lines",
-        ..ROW
+        ..vector(
+            "shapefile",
+            "a shapefile",
+            &["shp"],
+            // File code 9994, big endian.
+            &[Magic::At(0, &[0, 0, 0x27, 0x0a])],
+        )
     },
     Format {
-        name: "zipped shapefile",
-        noun: "a ZIP archive",
-        extensions: &["zip", "shz"],
-        magic: &[Magic::At(0, b"PK\x03\x04")],
         known_by: KnownBy::Name,
-        content: Content::Layer,
         holds: SHAPES_AND_CRS,
         reader: FormatReader::Layers(zipped::read_layer_with),
         cure: UNPACK,
         help: "lines, polygons and points in named shapefiles",
-        ..ROW
+        ..vector(
+            "zipped shapefile",
+            "a ZIP archive",
+            &["zip", "shz"],
+            &[Magic::At(0, b"PK\x03\x04")],
+        )
     },
     Format {
-        name: "GeoJSON",
-        noun: "a JSON file",
-        extensions: &["geojson", "json"],
-        magic: &[Magic::At(0, b"{")],
-        content: Content::Layer,
         holds: SHAPES_AND_CRS,
         gdal_names: &["GeoJSON"],
         reader: FormatReader::Layer(geojson::read_layer_with),
@@ -319,14 +332,14 @@ pub static FORMATS: &[Format] = &[
             |target, layer| geojson::write_lines(target, layer),
         ),
         help: "lines, polygons and points; contours; draped lines",
-        ..ROW
+        ..vector(
+            "GeoJSON",
+            "a JSON file",
+            &["geojson", "json"],
+            &[Magic::At(0, b"{")],
+        )
     },
     Format {
-        name: "GeoJSON lines",
-        noun: "a file of GeoJSON lines",
-        extensions: &["geojsonl", "geojsons"],
-        content: Content::Layer,
-        holds: SHAPES,
         gdal_names: &["GeoJSONSeq"],
         reader: FormatReader::Layer(geojson::read_lines_with),
         writers: layer_writers(
@@ -334,35 +347,36 @@ pub static FORMATS: &[Format] = &[
             |target, layer| geojson::write_line_records(target, layer),
         ),
         help: "lines, polygons and points; contours; draped lines; one feature a line",
-        ..ROW
+        ..vector(
+            "GeoJSON lines",
+            "a file of GeoJSON lines",
+            &["geojsonl", "geojsons"],
+            &[],
+        )
     },
     Format {
-        name: "GeoPackage",
-        noun: "a GeoPackage or another SQLite database",
-        extensions: &["gpkg"],
-        magic: &[Magic::At(0, b"SQLite format 3\0")],
         known_by: KnownBy::Bytes,
-        content: Content::Layer,
         holds: SHAPES_AND_CRS,
         read_along: &["gpkg-wal"],
         gdal_names: &["GPKG"],
         reader: DATABASE,
         writers: Writers {
-            contours: Some(|target, lines, crs| gpkg::write_contours(target, lines, crs)),
-            lines: Some(|target, layer| gpkg::write_lines(target, layer)),
             map: Some(gpkg::write_map),
-            ..NOT_WRITTEN
+            ..layer_writers(
+                |target, lines, crs| gpkg::write_contours(target, lines, crs),
+                |target, layer| gpkg::write_lines(target, layer),
+            )
         },
         help: "lines, polygons and points in named layers; contours; draped lines",
-        ..ROW
+        ..vector(
+            "GeoPackage",
+            "a GeoPackage or another SQLite database",
+            &["gpkg"],
+            &[Magic::At(0, b"SQLite format 3\0")],
+        )
     },
     Format {
-        name: "FlatGeobuf",
-        noun: "a FlatGeobuf file",
-        extensions: &["fgb"],
-        magic: &[Magic::At(0, b"fgb\x03fgb")],
         known_by: KnownBy::Bytes,
-        content: Content::Layer,
         holds: SHAPES_AND_CRS,
         gdal_names: &["FlatGeobuf"],
         reader: FormatReader::Layer(flatgeobuf::read_layer_with),
@@ -371,7 +385,12 @@ pub static FORMATS: &[Format] = &[
             |target, layer| flatgeobuf::write_lines(target, layer),
         ),
         help: "lines, polygons and points; contours; draped lines; with an index",
-        ..ROW
+        ..vector(
+            "FlatGeobuf",
+            "a FlatGeobuf file",
+            &["fgb"],
+            &[Magic::At(0, b"fgb\x03fgb")],
+        )
     },
     Format {
         name: "GeoTIFF",
@@ -458,116 +477,73 @@ pub static FORMATS: &[Format] = &[
         ..ROW
     },
     Format {
-        name: "PLY",
-        noun: "a PLY mesh",
-        extensions: &["ply"],
-        magic: &[Magic::At(0, b"ply")],
-        content: Content::Mesh,
         holds: SURFACE_AND_LINES,
         reader: FormatReader::Mesh(|path, watch| ply::read(&bytes_of(path, watch)?, watch)),
         writers: surface_writer(|target, mesh, crs| {
             ply::write(target, mesh, crs).map(|()| Remarks::default())
         }),
-        cure: AS_MESH,
         help: "triangles with breaklines and coordinate system",
-        ..ROW
+        ..mesh("PLY", "a PLY mesh", &["ply"], &[Magic::At(0, b"ply")])
     },
     Format {
-        name: "OBJ",
-        noun: "an OBJ mesh",
-        extensions: &["obj"],
-        content: Content::Mesh,
-        holds: SURFACE,
         reader: FormatReader::Mesh(|path, watch| obj::read(&bytes_of(path, watch)?, watch)),
         writers: surface_writer(|target, mesh, crs| {
             obj::write(target, mesh, crs).map(|()| Remarks::default())
         }),
-        cure: AS_MESH,
         help: "triangles",
-        ..ROW
+        ..mesh("OBJ", "an OBJ mesh", &["obj"], &[])
     },
     Format {
-        name: "OFF",
-        noun: "an OFF mesh",
-        extensions: &["off"],
-        content: Content::Mesh,
-        holds: SURFACE,
         reader: FormatReader::Mesh(|path, watch| off::read(&bytes_of(path, watch)?, watch)),
         writers: surface_writer(|target, mesh, crs| {
             off::write(target, mesh, crs).map(|()| Remarks::default())
         }),
-        cure: AS_MESH,
         help: "triangles",
-        ..ROW
+        ..mesh("OFF", "an OFF mesh", &["off"], &[])
     },
     Format {
-        name: "LandXML",
-        noun: "a LandXML file",
-        extensions: &["xml", "landxml"],
-        content: Content::Mesh,
         holds: SURFACE_AND_LINES,
         reader: FormatReader::Surfaces(landxml::read),
         writers: surface_writer(landxml::write),
-        cure: AS_MESH,
         help: "surfaces with breaklines, boundaries, units and coordinate system; FILE:NAME",
-        ..ROW
+        ..mesh("LandXML", "a LandXML file", &["xml", "landxml"], &[])
     },
     Format {
-        name: "GLB",
-        noun: "a binary glTF file",
-        extensions: &["glb"],
-        magic: &[Magic::At(0, b"glTF")],
-        content: Content::Mesh,
-        holds: SURFACE,
         reader: FormatReader::Mesh(|path, watch| glb::read(&bytes_of(path, watch)?, watch)),
         writers: surface_writer(glb::write),
-        cure: AS_MESH,
         help: "triangles in 32-bit floats from a local origin, with normals and colors (glTF)",
-        ..ROW
+        ..mesh(
+            "GLB",
+            "a binary glTF file",
+            &["glb"],
+            &[Magic::At(0, b"glTF")],
+        )
     },
     Format {
-        name: "2DM",
-        noun: "a 2DM mesh",
-        extensions: &["2dm"],
-        magic: &[Magic::At(0, b"MESH2D")],
-        content: Content::Mesh,
         holds: &[Holding::Mesh],
         reader: FormatReader::Mesh(|path, watch| mesh2dm::read(&bytes_of(path, watch)?, watch)),
         writers: surface_writer(mesh2dm::write),
-        cure: AS_MESH,
         help: "triangles (SMS, MDAL)",
-        ..ROW
+        ..mesh("2DM", "a 2DM mesh", &["2dm"], &[Magic::At(0, b"MESH2D")])
     },
     Format {
-        name: "UGRID",
-        noun: "a UGRID mesh",
-        extensions: &["nc"],
-        magic: &[Magic::At(0, b"CDF\x01"), Magic::At(0, b"CDF\x02")],
         known_by: KnownBy::NameAndBytes,
-        content: Content::Mesh,
-        holds: SURFACE,
         reader: FormatReader::Mesh(|path, watch| ugrid::read(&bytes_of(path, watch)?, watch)),
         writers: surface_writer(ugrid::write),
-        cure: AS_MESH,
         help: "triangles in NetCDF (MDAL, xarray)",
-        ..ROW
+        ..mesh(
+            "UGRID",
+            "a UGRID mesh",
+            &["nc"],
+            &[Magic::At(0, b"CDF\x01"), Magic::At(0, b"CDF\x02")],
+        )
     },
     Format {
-        name: "CityJSON",
-        noun: "a CityJSON file",
-        extensions: &["cityjson"],
-        content: Content::Mesh,
-        holds: SURFACE,
         reader: FormatReader::Unread,
         writers: surface_writer(cityjson::write),
-        cure: AS_MESH,
-        ..ROW
+        ..mesh("CityJSON", "a CityJSON file", &["cityjson"], &[])
     },
     Format {
-        name: "STL",
-        noun: "an STL mesh",
-        extensions: &["stl"],
-        content: Content::Mesh,
         holds: &[Holding::Mesh],
         beside: &["stl.origin.txt"],
         parts: &["stl.origin.txt"],
@@ -579,48 +555,43 @@ pub static FORMATS: &[Format] = &[
                 ..Remarks::default()
             })
         }),
-        cure: AS_MESH,
         help: "triangles in 32-bit floats from a local origin; written only",
-        ..ROW
+        ..mesh("STL", "an STL mesh", &["stl"], &[])
     },
     Format {
-        name: "TIN",
-        noun: "a TIN of breakline",
-        extensions: &["tin"],
-        magic: &[Magic::At(0, b"brkTIN\n\x1a")],
         known_by: KnownBy::Bytes,
-        content: Content::Mesh,
         holds: SURFACE_AND_LINES,
         reader: FormatReader::Tin(tin::map),
         writers: surface_writer(|target, mesh, _| {
             tin::write(target, mesh).map(|()| Remarks::default())
         }),
-        cure: AS_MESH,
         help: "triangulation with breaklines and coordinate system, opened in milliseconds",
-        ..ROW
+        ..mesh(
+            "TIN",
+            "a TIN of breakline",
+            &["tin"],
+            &[Magic::At(0, b"brkTIN\n\x1a")],
+        )
     },
     Format {
-        name: "TIN in parts",
-        noun: "a TIN in parts",
-        extensions: &["tins"],
-        magic: &[Magic::At(0, b"{\"breakline_tin_parts\"")],
         known_by: KnownBy::Bytes,
-        content: Content::Mesh,
         holds: SURFACE_AND_LINES,
         reader: FormatReader::Parts(tin::index),
         writers: surface_writer(|_, _, _| Err(tin::needs_tiles())),
-        cure: AS_MESH,
         help: "index of a TIN in parts, one file for each tile; for surfaces larger than memory",
-        ..ROW
+        ..mesh(
+            "TIN in parts",
+            "a TIN in parts",
+            &["tins"],
+            &[Magic::At(0, b"{\"breakline_tin_parts\"")],
+        )
     },
     Format {
         reader: FormatReader::Layers(dxf::read),
         writers: Writers {
             surface: Some(dxf::write_surface),
-            lines: Some(dxf::write_lines),
-            contours: Some(dxf::write_contours),
             map: Some(dxf::write_map),
-            ..NOT_WRITTEN
+            ..layer_writers(dxf::write_contours, dxf::write_lines)
         },
         holds: &[
             Holding::Points,
