@@ -8,6 +8,7 @@ pub(crate) mod decimal;
 pub(crate) mod decimal_mark;
 pub(crate) mod field;
 pub(crate) mod lines;
+pub(crate) mod little_endian;
 pub mod mapped;
 pub(crate) mod output;
 pub(crate) mod rows;

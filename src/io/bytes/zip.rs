@@ -2,10 +2,11 @@
 //! the bytes that are there.
 
 use std::fs::File;
-use std::io::{Read, Seek, SeekFrom, Take, Write};
+use std::io::{Read, Seek, SeekFrom, Write};
 
 use flate2::read::DeflateDecoder;
 
+use super::little_endian::{u16_at, u32_at};
 use super::watch::Watch;
 use crate::error::{Error, Result};
 
@@ -41,16 +42,6 @@ pub(crate) struct Archive {
     pub(crate) members: Vec<Member>,
 }
 
-fn two(bytes: &[u8], at: usize) -> u16 {
-    let found = bytes.get(at..).and_then(|rest| rest.first_chunk());
-    found.map_or(0, |bytes| u16::from_le_bytes(*bytes))
-}
-
-fn four(bytes: &[u8], at: usize) -> u32 {
-    let found = bytes.get(at..).and_then(|rest| rest.first_chunk());
-    found.map_or(0, |bytes| u32::from_le_bytes(*bytes))
-}
-
 #[cold]
 fn damaged(what: &str) -> Error {
     Error::format(format!("a ZIP archive {what}")).cure("copy or download the file again")
@@ -67,14 +58,14 @@ impl Archive {
         let tail = bytes_at(&mut file, start, length - start)?;
         let is_end = |&at: &usize| {
             tail[at..].starts_with(b"PK\x05\x06")
-                && at + 22 + usize::from(two(&tail, at + 20)) == tail.len()
+                && at + 22 + usize::from(u16_at(&tail, at + 20)) == tail.len()
         };
         let end = (0..tail.len().saturating_sub(21)).rev().find(is_end);
         let end = end.ok_or_else(|| damaged("without the list at its end: it is cut"))?;
         let location = format!("byte {}", start + end as u64);
-        let count = two(&tail, end + 10);
-        let (size, offset) = (four(&tail, end + 12), four(&tail, end + 16));
-        if two(&tail, end + 4) != 0 || two(&tail, end + 8) != count {
+        let count = u16_at(&tail, end + 10);
+        let (size, offset) = (u32_at(&tail, end + 12), u32_at(&tail, end + 16));
+        if u16_at(&tail, end + 4) != 0 || u16_at(&tail, end + 8) != count {
             return Err(Error::unsupported("a ZIP archive of several files").at(location));
         }
         if offset == u32::MAX || count == u16::MAX {
@@ -128,7 +119,7 @@ impl Archive {
                 damaged("whose list names a byte where no member begins").at(member.location())
             );
         }
-        let before = u64::from(two(&head, 26)) + u64::from(two(&head, 28));
+        let before = u64::from(u16_at(&head, 26)) + u64::from(u16_at(&head, 28));
         self.file
             .seek(SeekFrom::Start(member.offset + 30 + before))?;
         let packed = (&mut self.file).take(member.packed);
@@ -153,8 +144,7 @@ impl Member {
 fn bytes_at(file: &mut File, start: u64, count: u64) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     file.seek(SeekFrom::Start(start))?;
-    let mut part: Take<&mut File> = file.take(count);
-    part.read_to_end(&mut bytes)?;
+    file.take(count).read_to_end(&mut bytes)?;
     match bytes.len() as u64 == count {
         true => Ok(bytes),
         false => Err(damaged("that ends too early: it is cut")),
@@ -197,11 +187,11 @@ fn members(mut list: &[u8], count: usize) -> Result<Vec<Member>> {
             return Err(ends());
         }
         let (head, rest) = list.split_at_checked(46).ok_or_else(ends)?;
-        let [name, extra, comment] = [28, 30, 32].map(|at| usize::from(two(head, at)));
+        let [name, extra, comment] = [28, 30, 32].map(|at| usize::from(u16_at(head, at)));
         let (name, rest) = rest.split_at_checked(name).ok_or_else(ends)?;
         let (extra, rest) = rest.split_at_checked(extra).ok_or_else(ends)?;
         list = rest.get(comment..).ok_or_else(ends)?;
-        let mut sizes = [24, 20, 42].map(|at| u64::from(four(head, at)));
+        let mut sizes = [24, 20, 42].map(|at| u64::from(u32_at(head, at)));
         long_sizes(&mut sizes, extra);
         let [size, packed, offset] = sizes;
         members.push(Member {
@@ -210,9 +200,9 @@ fn members(mut list: &[u8], count: usize) -> Result<Vec<Member>> {
             size,
             packed,
             offset,
-            method: two(head, 10),
-            flags: two(head, 8),
-            checksum: four(head, 16),
+            method: u16_at(head, 10),
+            flags: u16_at(head, 8),
+            checksum: u32_at(head, 16),
         });
     }
     Ok(members)
@@ -222,8 +212,8 @@ fn members(mut list: &[u8], count: usize) -> Result<Vec<Member>> {
 fn long_sizes(sizes: &mut [u64; 3], mut extra: &[u8]) {
     while extra.len() >= 4 {
         let (head, rest) = extra.split_at(4);
-        let (field, behind) = rest.split_at(usize::from(two(head, 2)).min(rest.len()));
-        if two(head, 0) == 1 {
+        let (field, behind) = rest.split_at(usize::from(u16_at(head, 2)).min(rest.len()));
+        if u16_at(head, 0) == 1 {
             let mut numbers = field
                 .as_chunks()
                 .0

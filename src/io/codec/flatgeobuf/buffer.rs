@@ -4,6 +4,7 @@
 use std::cell::Cell;
 
 use crate::error::{Error, Result};
+use crate::io::bytes::little_endian::{array_at, u16_at};
 
 /// A buffer, and how much of it may still be read.
 pub(super) struct Buffer<'a> {
@@ -39,8 +40,7 @@ impl<'a> Buffer<'a> {
     }
 
     fn array<const N: usize>(&self, at: usize) -> Result<[u8; N]> {
-        let found = self.bytes.get(at..).and_then(|rest| rest.first_chunk());
-        found.copied().ok_or_else(|| damaged(at))
+        array_at(self.bytes, at).ok_or_else(|| damaged(at))
     }
 
     fn word(&self, at: usize) -> Result<usize> {
@@ -86,8 +86,8 @@ impl<'a> Buffer<'a> {
 impl<'a> Table<'a> {
     /// Returns the position of a value; `None` if the table lacks it.
     fn slot(self, slot: usize) -> Option<usize> {
-        let offset = self.slots.get(2 * slot..)?.first_chunk()?;
-        match u16::from_le_bytes(*offset) {
+        // Slots behind the end of the list are zeros: values that the table lacks.
+        match u16_at(self.slots, 2 * slot) {
             0 => None,
             offset => Some(self.at + usize::from(offset)),
         }

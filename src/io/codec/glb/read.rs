@@ -7,6 +7,7 @@ use crate::crs::Crs;
 use crate::data::Triangles;
 use crate::error::{Error, Result};
 use crate::io::Watch;
+use crate::io::bytes::little_endian::{array_at, f32_at, u8_at, u16_at, u32_at};
 
 /// Reads all triangles of the nodes with meshes, which may be translated. Coordinates are the sums
 /// of the local origin and the 32-bit floats.
@@ -43,10 +44,7 @@ pub(crate) fn read(bytes: &[u8], watch: Watch) -> Result<Triangles> {
 
 /// Returns the two chunks: the text and the arrays.
 fn chunks(bytes: &[u8]) -> Result<(&[u8], &[u8])> {
-    let number = |at: usize| {
-        let bytes = bytes.get(at..at + 4)?.try_into().ok()?;
-        Some(u32::from_le_bytes(bytes))
-    };
+    let number = |at: usize| array_at(bytes, at).map(u32::from_le_bytes);
     if !bytes.starts_with(MAGIC) {
         return Err(Error::format("the file does not begin with 'glTF'").at("byte 0"));
     }
@@ -132,25 +130,17 @@ struct Array<'a> {
 }
 
 impl Array<'_> {
-    fn bytes<const N: usize>(&self, at: usize) -> [u8; N] {
-        self.data
-            .get(at..)
-            .and_then(|rest| rest.first_chunk())
-            .copied()
-            .unwrap_or([0; N])
-    }
-
     fn position(&self, number: usize) -> [f64; 3] {
         let start = number * self.stride;
-        [0, 4, 8].map(|at| f64::from(f32::from_le_bytes(self.bytes(start + at))))
+        [0, 4, 8].map(|at| f64::from(f32_at(self.data, start + at)))
     }
 
     fn index(&self, number: usize) -> u32 {
         let start = number * self.stride;
         match self.kind {
-            BYTE => u32::from(self.bytes::<1>(start)[0]),
-            SHORT => u32::from(u16::from_le_bytes(self.bytes(start))),
-            _ => u32::from_le_bytes(self.bytes(start)),
+            BYTE => u32::from(u8_at(self.data, start)),
+            SHORT => u32::from(u16_at(self.data, start)),
+            _ => u32_at(self.data, start),
         }
     }
 }

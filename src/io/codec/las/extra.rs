@@ -1,10 +1,11 @@
 //! Extra bytes: numbers that are appended to the records of points, and their descriptions.
 
 use super::merge::usual_length;
-use super::raw::{VLR_HEADER, u16_at, until_zero};
+use super::raw::{VLR_HEADER, until_zero};
 use super::write::record_header;
 use crate::data::{LasHead, PointBatch};
 use crate::error::{Error, Result, Setting, wording};
+use crate::io::bytes::little_endian::u16_at;
 
 /// The user and the number of the record that describes extra bytes.
 const USER: &str = "LASF_Spec";

@@ -1,9 +1,10 @@
 //! Merges the headers, records and lattices of several files into those of one file.
 
 use super::header::RECORD_LENGTHS;
-use super::raw::{u16_at, until_zero};
+use super::raw::until_zero;
 use crate::data::{Embedding, LasHead, Lattice, PointInfo};
 use crate::error::{Error, Result, Setting, wording};
+use crate::io::bytes::little_endian::u16_at;
 
 /// The generating software, as the header states it.
 const SOFTWARE: &str = concat!("breakline ", env!("CARGO_PKG_VERSION"));

@@ -3,6 +3,8 @@
 //! Nothing is checked here: a field beyond the end of the bytes reads as zero.
 //! [`header`](super::header) checks the values.
 
+use crate::io::bytes::little_endian::{f64_at, u8_at, u16_at, u32_at, u64_at};
+
 /// Bytes of the header in every version.
 pub(super) const MIN_HEADER: usize = 227;
 /// Bytes of a LAS 1.4 header; the time offsets that 1.5 adds are not used.
@@ -100,34 +102,6 @@ impl RawRecordHeader {
             description: text_at(bytes, 28, 32),
         }
     }
-}
-
-fn at<const N: usize>(bytes: &[u8], start: usize) -> [u8; N] {
-    bytes
-        .get(start..)
-        .and_then(|rest| rest.first_chunk())
-        .copied()
-        .unwrap_or([0; N])
-}
-
-fn u8_at(bytes: &[u8], start: usize) -> u8 {
-    u8::from_le_bytes(at(bytes, start))
-}
-
-pub(super) fn u16_at(bytes: &[u8], start: usize) -> u16 {
-    u16::from_le_bytes(at(bytes, start))
-}
-
-pub(super) fn u32_at(bytes: &[u8], start: usize) -> u32 {
-    u32::from_le_bytes(at(bytes, start))
-}
-
-pub(super) fn u64_at(bytes: &[u8], start: usize) -> u64 {
-    u64::from_le_bytes(at(bytes, start))
-}
-
-pub(super) fn f64_at(bytes: &[u8], start: usize) -> f64 {
-    f64::from_le_bytes(at(bytes, start))
 }
 
 /// Returns a field of characters without its padding of zeros.

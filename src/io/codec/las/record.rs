@@ -2,9 +2,9 @@
 
 use super::header::Header;
 use super::merge::far;
-use super::raw::{u16_at, u32_at};
 use crate::data::{Lattice, PointBatch, PointFlags};
 use crate::error::{Error, Result};
+use crate::io::bytes::little_endian::{u16_at, u32_at};
 use crate::io::options::las::Detail;
 
 /// How point records are laid out in memory, and how their integers become coordinates.

@@ -1,10 +1,11 @@
 //! Reads the coordinate system of a LAS file, from WKT or GeoTIFF keys.
 
-use super::raw::{f64_at, until_zero};
+use super::raw::until_zero;
 use super::record::words;
 use super::records::Payloads;
 use crate::crs::{Crs, GeoKeys};
 use crate::error::Wording;
+use crate::io::bytes::little_endian::f64_at;
 
 /// The coordinate system that a record states, or what it states if that is not understood.
 type Stated = std::result::Result<Crs, String>;

@@ -1,10 +1,11 @@
 //! Writes a coordinate system into the head of a LAS file.
 
-use super::raw::{u16_at, until_zero};
+use super::raw::until_zero;
 use super::write::record_header;
 use crate::crs::{Crs, GeoKeys};
 use crate::data::LasHead;
 use crate::error::{Error, Result};
+use crate::io::bytes::little_endian::u16_at;
 
 const USER: &str = "LASF_Projection";
 /// The math transform and the coordinate system in WKT; keys, numbers and text of GeoTIFF.

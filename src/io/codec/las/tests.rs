@@ -10,6 +10,7 @@ use crate::crs::{Crs, GeoKeys};
 use crate::data::{Lattice, PointBatch, PointFlags, PointSource};
 use crate::error::{Kind, Result, Wording};
 use crate::io::OnDamage;
+use crate::io::bytes::little_endian::{u32_at, u64_at};
 
 const SCALE: [f64; 3] = [0.01, 0.001, 0.1];
 const OFFSET: [f64; 3] = [500_000.0, -5_300_000.0, 12.5];
@@ -289,8 +290,8 @@ fn one_thread_gives_what_many_give() {
 
 /// The offset of the chunk table's position, and that position.
 fn table_of(bytes: &[u8]) -> (usize, usize) {
-    let points = super::raw::u32_at(bytes, 96) as usize;
-    (points, super::raw::u64_at(bytes, points) as usize)
+    let points = u32_at(bytes, 96) as usize;
+    (points, u64_at(bytes, points) as usize)
 }
 
 #[test]

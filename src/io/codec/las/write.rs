@@ -8,10 +8,10 @@ use std::io::{Seek, SeekFrom, Write};
 use laz::{LazItemRecordBuilder, LazVlr, ParLasZipCompressor};
 
 use super::merge::{self, LatticeStep, Rounding, padded};
-use super::raw::u32_at;
 use crate::data::{Bounds, LasHead, Lattice, PointBatch, PointInfo, PointSink, PointSummary};
 use crate::error::{Error, Kind, Result};
 use crate::io::bytes::contain::contain;
+use crate::io::bytes::little_endian::u32_at;
 use crate::io::bytes::output::{Destination, Output};
 
 /// Bytes of records that are compressed together, per thread: about two chunks of typical points.

@@ -11,7 +11,7 @@ use super::compression::{Compression, Order, POINT14, POINT14_LAYERS};
 use super::table::layer_sizes;
 use crate::data::PointBatch;
 use crate::io::bytes::contain::contain;
-use crate::io::codec::las::raw::u32_at;
+use crate::io::bytes::little_endian::u32_at;
 use crate::io::codec::las::record::RecordLayout;
 use crate::io::options::las::Detail;
 

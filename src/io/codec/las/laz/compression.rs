@@ -6,8 +6,8 @@ use laz::record::{
 use laz::{LasZipError, LazItem, LazItemType, LazVlr};
 
 use crate::error::{Error, Result};
+use crate::io::bytes::little_endian::{u16_at, u32_at};
 use crate::io::codec::las::header::Header;
-use crate::io::codec::las::raw::{u16_at, u32_at};
 
 /// Bytes of a point of format 6, with which every layered chunk begins.
 pub(super) const POINT14: usize = 30;

@@ -10,8 +10,8 @@ use std::fmt;
 use super::table::Chunk;
 use crate::data::{Bounds, PointBatch};
 use crate::error::{Command, Error, Result, wording};
+use crate::io::bytes::little_endian::{f64_at, u32_at, u64_at};
 use crate::io::codec::las::input::Input;
-use crate::io::codec::las::raw::{f64_at, u32_at, u64_at};
 
 /// Bytes of the record "copc", 1.
 const INFO: usize = 160;

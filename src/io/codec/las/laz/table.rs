@@ -6,9 +6,9 @@ use laz::laszip::ChunkTable;
 
 use super::compression::{ChunkSize, Compression, Order};
 use crate::io::bytes::contain::contain;
+use crate::io::bytes::little_endian::{u32_at, u64_at};
 use crate::io::codec::las::header::Header;
 use crate::io::codec::las::input::Input;
-use crate::io::codec::las::raw::{u32_at, u64_at};
 
 /// Bytes before the first chunk: the position of the chunk table.
 pub(super) const POINTER: u64 = 8;
