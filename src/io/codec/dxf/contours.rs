@@ -2,13 +2,13 @@
 
 use std::collections::BTreeSet;
 
-use super::{Dxf, DxfLayer};
+use super::{Align, Dxf, DxfLayer};
 use crate::crs::Crs;
 use crate::data::{Bounds, ContourLine, Layer, Shape, Value};
 use crate::error;
 use crate::io::bytes::output::Destination;
 use crate::io::codec::contour_summary::ContourSummary;
-use crate::io::options::map_sheet::{MapSheet, values};
+use crate::io::options::map_sheet::MapSheet;
 
 /// The positions of the layers: those of lines, of index contours and of labels.
 const LINES: usize = 0;
@@ -50,12 +50,10 @@ pub(crate) fn write_map(target: Destination, sheet: &MapSheet) -> error::Result<
     let mut bounds = Bounds::default();
     let all = lines.iter().chain(&labels);
     all.flat_map(vertices).for_each(|at| bounds.add(at));
-    let is_marked = |values: &Option<Vec<&Value>>, shape: usize| {
-        let value = values.as_ref().and_then(|values| values.get(shape));
-        matches!(value, Some(Value::Whole(1)))
-    };
-    let marks = |name: &str| sheet.shapes.and_then(|layer| values(layer, name));
-    let (index, depressions) = (marks("INDEX"), marks("DEPRESSION"));
+    let is_marked =
+        |values: &[&Value], shape: usize| matches!(values.get(shape), Some(Value::Whole(1)));
+    let index = values(sheet.shapes, "INDEX");
+    let depressions = values(sheet.shapes, "DEPRESSION");
     target.write_with(|out| {
         let mut drawing = Dxf::begin(out, layers(), &bounds)?;
         for (number, (shape, height)) in lines.iter().enumerate() {
@@ -71,16 +69,13 @@ pub(crate) fn write_map(target: Destination, sheet: &MapSheet) -> error::Result<
                 }
             }
         }
-        let rotations = sheet.labels.and_then(|labels| values(labels, "ROTATION"));
+        let rotations = values(sheet.labels, "ROTATION");
         for (number, label) in labels.iter().enumerate() {
-            let rotation = rotations.as_ref().and_then(|values| values.get(number));
-            let degrees = match rotation {
-                Some(Value::Number(degrees)) => *degrees,
-                _ => 0.0,
-            };
+            let direction = number_or_zero(&rotations, number);
             let text = Value::Number(label.1).text();
             for at in vertices(label) {
-                drawing.centered(LABELS, at, sheet.text_height, degrees, &text)?;
+                let align = Align::Middle { direction };
+                drawing.text(LABELS, at, sheet.text_height, align, &text)?;
             }
         }
         drawing.end()
@@ -96,14 +91,30 @@ pub(crate) fn write_map(target: Destination, sheet: &MapSheet) -> error::Result<
 
 /// Returns the shapes of a layer with their heights, which their vertices need not have.
 fn at_heights(layer: Option<&Layer>) -> Vec<(&Shape, f64)> {
-    let heights = layer.and_then(|layer| values(layer, "ELEV"));
-    let height = |shape: usize| match heights.as_ref().and_then(|values| values.get(shape)) {
-        Some(Value::Number(height)) => *height,
-        _ => 0.0,
-    };
+    let heights = values(layer, "ELEV");
     let shapes = layer.map_or(&[][..], |layer| &layer.shapes);
     let numbered = shapes.iter().enumerate();
-    numbered.map(|(i, shape)| (shape, height(i))).collect()
+    numbered
+        .map(|(i, shape)| (shape, number_or_zero(&heights, i)))
+        .collect()
+}
+
+/// Returns the values of an attribute of a layer, one for each shape; none if it has no such
+/// attribute.
+fn values<'a>(layer: Option<&'a Layer>, name: &str) -> Vec<&'a Value> {
+    let attributes = layer.and_then(|layer| layer.attributes.as_ref());
+    let values = attributes.and_then(|attributes| {
+        let number = attributes.names.iter().position(|own| own == name)?;
+        Some(attributes.column(number).collect())
+    });
+    values.unwrap_or_default()
+}
+
+fn number_or_zero(values: &[&Value], shape: usize) -> f64 {
+    match values.get(shape) {
+        Some(Value::Number(number)) => *number,
+        _ => 0.0,
+    }
 }
 
 fn vertices<'a>(&(shape, height): &(&'a Shape, f64)) -> impl Iterator<Item = [f64; 3]> + use<'a> {

@@ -122,12 +122,16 @@ pub(crate) struct DxfLayer {
     color: u8,
 }
 
-/// How a text lies at its position.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// How a text lies at its position: above it, but for `Middle`.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Align {
     Left,
     Center,
     Right,
+    /// Around it, in a direction in degrees counter-clockwise from x.
+    Middle {
+        direction: f64,
+    },
 }
 
 impl DxfLayer {
@@ -298,25 +302,7 @@ impl<'a> Dxf<'a> {
         self.entity("SEQEND", layer)
     }
 
-    /// Writes a text around a position, in a direction in degrees counter-clockwise from x.
-    fn centered(
-        &mut self,
-        layer: usize,
-        at: [f64; 3],
-        height: f64,
-        direction: f64,
-        text: &str,
-    ) -> Result<()> {
-        self.entity("TEXT", layer)?;
-        self.point(0, at)?;
-        self.number(40, height)?;
-        self.word(1, &encoded(text))?;
-        self.number(50, direction)?;
-        self.words(&[(72, "1"), (73, "2")])?;
-        self.point(1, at)
-    }
-
-    /// Writes a text above a position.
+    /// Writes a text at a position.
     pub(crate) fn text(
         &mut self,
         layer: usize,
@@ -329,12 +315,15 @@ impl<'a> Dxf<'a> {
         self.point(0, at)?;
         self.number(40, height)?;
         self.word(1, &encoded(text))?;
-        let align = match align {
+        match align {
             Align::Left => return Ok(()),
-            Align::Center => "1",
-            Align::Right => "2",
-        };
-        self.word(72, align)?;
+            Align::Center => self.word(72, "1")?,
+            Align::Right => self.word(72, "2")?,
+            Align::Middle { direction } => {
+                self.number(50, direction)?;
+                self.words(&[(72, "1"), (73, "2")])?;
+            }
+        }
         self.point(1, at)
     }
 
