@@ -3,6 +3,13 @@
 use crate::crs::Crs;
 use crate::data::Layer;
 
+/// Returns the number of a system at EPSG, if the number says all of it. That of a system with heights
+/// is one of the plan: the heights are in the text alone.
+pub(crate) fn code_of(crs: &Crs) -> Option<i32> {
+    let code = crs.epsg.filter(|_| crs.vertical_unit.is_none())?;
+    i32::try_from(code).ok()
+}
+
 /// Sets the system of a layer: that of the number if it is one of EPSG's that is known, else that
 /// of the text. One that is not understood is a warning.
 pub(crate) fn read(organization: &str, code: i64, definition: String, layer: &mut Layer) {

@@ -12,6 +12,7 @@ use crate::data::{ContourLine, Layer, Shape, Value, ValueKind, polygons};
 use crate::error::{Error, Result};
 use crate::io::bytes::output::{Destination, Output};
 use crate::io::codec::contour_summary::ContourSummary;
+use crate::io::codec::stated_system;
 
 /// Writes contours as line strings with heights, with the attributes `ID` (from 1) and `ELEV` and a
 /// spatial index; the layer has the name of the file. Lines are in the order of the index.
@@ -421,14 +422,11 @@ fn header(head: &Head, name: &str, all: Extent, count: u64, is_indexed: bool) ->
 }
 
 fn add_system(builder: &mut Builder, open: Open, crs: &Crs) {
-    // The code is that of the plan: heights of a stated system are in the text alone.
-    let code = crs.epsg.filter(|_| crs.vertical_unit.is_none());
-    let code = code.and_then(|code| i32::try_from(code).ok());
     let mut slots = vec![
         (schema::crs::NAME, Slot::Offset),
         (schema::crs::WKT, Slot::Offset),
     ];
-    if let Some(code) = code {
+    if let Some(code) = stated_system::code_of(crs) {
         slots.push((schema::crs::ORGANIZATION, Slot::Offset));
         slots.push((schema::crs::CODE, Slot::Int(code)));
     }

@@ -13,6 +13,7 @@ use crate::error::{Error, Result};
 use crate::io::bytes::appended::appended;
 use crate::io::bytes::output::{Destination, is_stream};
 use crate::io::codec::contour_summary::ContourSummary;
+use crate::io::codec::stated_system;
 use crate::io::options::map_sheet::MapSheet;
 
 /// The columns of the key and of the geometry.
@@ -432,13 +433,9 @@ fn triggers(name: &str, table: &str) -> String {
 
 /// Returns the number of the system of a layer in the file.
 fn system_of(crs: Option<&Crs>) -> i32 {
-    let Some(crs) = crs else {
-        return UNKNOWN_SYSTEM;
-    };
-    // The code is that of the plan: heights of a stated system are in the text alone.
-    let code = crs.epsg.filter(|_| crs.vertical_unit.is_none());
-    let code = code.and_then(|code| i32::try_from(code).ok());
-    code.unwrap_or(OWN_SYSTEM)
+    crs.map_or(UNKNOWN_SYSTEM, |crs| {
+        stated_system::code_of(crs).unwrap_or(OWN_SYSTEM)
+    })
 }
 
 /// Adds longitude and latitude, which each file has, and the system of the layer with its number.
