@@ -2,7 +2,7 @@
 //! what they accept and report.
 
 use super::layer::Options;
-use crate::data::{Attributes, Layer, named};
+use crate::data::{Attributes, Layer, Shape, named};
 use crate::error::{Error, Result};
 use crate::io::bytes::field::no_such_field;
 
@@ -95,6 +95,20 @@ pub(crate) fn warn_of_missing_heights(records: usize, layer: &mut Layer) {
         let lacking = "records without a number in the field of the heights";
         layer.warnings.push(format!("{records} {lacking}").into());
     }
+}
+
+/// Adds a warning for each attribute whose values are bytes, if attributes are kept.
+pub(crate) fn warn_of_bytes<'a>(fields: impl Iterator<Item = &'a str>, layer: &mut Layer) {
+    if layer.attributes.is_some() {
+        let lost = fields.map(|name| format!("attribute {name} has bytes, which are left out"));
+        layer.warnings.extend(lost.map(Into::into));
+    }
+}
+
+/// Sets the height of shapes to the number in an attribute. Returns true if there is none.
+pub(crate) fn set_heights(shapes: &mut [Shape], height: f64) -> bool {
+    shapes.iter_mut().for_each(|shape| shape.set_height(height));
+    height.is_nan()
 }
 
 /// Returns the position of a name among several.

@@ -11,7 +11,9 @@ use crate::io::bytes::field::{not_a_number, number_of};
 use crate::io::bytes::watch::{Meter, Watch, bytes_of};
 use crate::io::codec::stated_system;
 use crate::io::options::layer::Options;
-use crate::io::options::layers::{Fields, check_depth, warn_of_missing_heights};
+use crate::io::options::layers::{
+    Fields, check_depth, set_heights, warn_of_bytes, warn_of_missing_heights,
+};
 
 /// Limit for the bytes of a header, where other readers have it.
 const LARGEST_HEADER: usize = 10 << 20;
@@ -68,12 +70,9 @@ pub(super) fn parse(bytes: &[u8], stem: &str, options: &Options, watch: Watch) -
         without_height,
         ..
     } = reading;
-    if layer.attributes.is_some() {
-        let lost = head.columns.iter();
-        let lost = lost.filter(|(_, kind)| *kind == ColumnType::Binary);
-        let lost = lost.map(|(name, _)| format!("attribute {name} has bytes, which are left out"));
-        layer.warnings.extend(lost.map(Into::into));
-    }
+    let of_bytes = head.columns.iter();
+    let of_bytes = of_bytes.filter(|(_, kind)| *kind == ColumnType::Binary);
+    warn_of_bytes(of_bytes.map(|(name, _)| name.as_str()), &mut layer);
     warn_of_missing_heights(without_height, &mut layer);
     Ok(layer)
 }
@@ -225,9 +224,8 @@ impl Reading<'_> {
         }
         if let Some(field) = self.fields.height {
             let height = number_of(&row[field]).unwrap_or(f64::NAN);
-            let shapes = self.layer.shapes[first..].iter_mut();
-            shapes.for_each(|shape| shape.set_height(height));
-            self.without_height += usize::from(height.is_nan());
+            let is_missing = set_heights(&mut self.layer.shapes[first..], height);
+            self.without_height += usize::from(is_missing);
         }
         if let Some(attributes) = &mut self.layer.attributes {
             attributes.rows.resize(count, row);

@@ -15,7 +15,7 @@ use crate::error::{Error, Result};
 use crate::io::bytes::field::{finite_or_none, not_a_number, parse_number};
 use crate::io::bytes::watch::{Watch, unwatched};
 use crate::io::options::layer::Options;
-use crate::io::options::layers::{Fields, check_depth, warn_of_missing_heights};
+use crate::io::options::layers::{Fields, check_depth, set_heights, warn_of_missing_heights};
 
 /// Reads a layer of any vector file that GDAL supports; `layer` may be omitted if the file has only
 /// one.
@@ -133,10 +133,7 @@ fn add_shapes(
         .field(field)
         .map_err(|error| messages::error(path, error))?;
     let height = value.map_or(Ok(f64::NAN), number).unwrap_or(f64::NAN);
-    into[first..]
-        .iter_mut()
-        .for_each(|shape| shape.set_height(height));
-    Ok(height.is_nan())
+    Ok(set_heights(&mut into[first..], height))
 }
 
 /// Adds the numbers of a record to the columns, once for each of its shapes.

@@ -17,7 +17,7 @@ use crate::io::bytes::field::{finite_or_none, not_a_number, parse_number};
 use crate::io::bytes::watch::Watch;
 use crate::io::codec::stated_system;
 use crate::io::options::layer::Options;
-use crate::io::options::layers::{Fields, warn_of_missing_heights};
+use crate::io::options::layers::{Fields, set_heights, warn_of_bytes, warn_of_missing_heights};
 
 /// The first bytes of a database.
 const MAGIC: &[u8] = b"SQLite format 3\0";
@@ -279,13 +279,8 @@ impl Source {
             let added = self.add(row, &fields, &mut layer);
             without_height += usize::from(added.map_err(|e| e.at(self.name_of(row, record)))?);
         }
-        if layer.attributes.is_some() {
-            let lost = self.fields.iter().filter(|field| field.has_bytes());
-            let lost = lost.map(|Field { name, .. }| {
-                format!("attribute {name} has bytes, which are left out").into()
-            });
-            layer.warnings.extend(lost);
-        }
+        let of_bytes = self.fields.iter().filter(|field| field.has_bytes());
+        warn_of_bytes(of_bytes.map(|field| field.name.as_str()), &mut layer);
         warn_of_missing_heights(without_height, &mut layer);
         Ok(layer)
     }
@@ -344,9 +339,7 @@ impl Source {
             return Ok(false);
         };
         let height = number(value(field)?).unwrap_or(f64::NAN);
-        let shapes = layer.shapes[first..].iter_mut();
-        shapes.for_each(|shape| shape.set_height(height));
-        Ok(height.is_nan())
+        Ok(set_heights(&mut layer.shapes[first..], height))
     }
 
     fn read_system(&self, database: &Connection, layer: &mut Layer) -> Result<()> {
@@ -362,16 +355,16 @@ impl Source {
         let Some((organization, code, mut definition)) = found.optional().map_err(damaged)? else {
             return Ok(());
         };
+        // -1 and 0 are systems that are not known.
+        if matches!(self.system, -1 | 0) {
+            return Ok(());
+        }
         // An extension of the standard: a text of 2019 where that of 2001 cannot say it.
         if definition.is_empty() || definition.eq_ignore_ascii_case("undefined") {
             let later = "SELECT definition_12_063 FROM gpkg_spatial_ref_sys WHERE srs_id = ?1";
             let later = database.query_row(later, [self.system], |row| row.get(0));
             // Most files have no such column.
             definition = later.unwrap_or(definition);
-        }
-        // -1 and 0 are systems that are not known.
-        if matches!(self.system, -1 | 0) {
-            return Ok(());
         }
         stated_system::read(&organization, code, definition, layer);
         Ok(())
