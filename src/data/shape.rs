@@ -97,6 +97,17 @@ impl Shape {
         }
     }
 
+    /// Returns the number of points, lines or polygons; a polygon is an outer ring with its holes.
+    pub(crate) fn part_count(&self) -> usize {
+        match self {
+            Shape::Null => 0,
+            Shape::Points(points) => points.len(),
+            Shape::Lines(parts) => parts.len(),
+            Shape::Polygon(rings) => polygons(rings).len(),
+            Shape::Faces(faces) => faces.len(),
+        }
+    }
+
     /// Sets the height of every vertex.
     pub fn set_height(&mut self, z: f64) {
         self.change_vertices(|p| p[2] = z);

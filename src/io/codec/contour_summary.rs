@@ -1,4 +1,4 @@
-use crate::data::{Bounds, ContourLine};
+use crate::data::{Bounds, ContourLine, Shape, Value};
 
 /// What a contour file contains, counted.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -24,5 +24,14 @@ impl ContourSummary {
         let bounds = line.bounds();
         self.bounds.merge(&bounds);
         bounds
+    }
+
+    /// Returns the record of the line that was added last: its shape with heights, its number from
+    /// 1, and its height.
+    pub(crate) fn last_record(&self, line: &ContourLine) -> (Shape, [Value; 2]) {
+        let vertices = line.points.iter().map(|&[x, y]| [x, y, line.level]);
+        let shape = Shape::Lines(vec![vertices.collect()]);
+        let values = [Value::Whole(self.lines as i64), Value::Number(line.level)];
+        (shape, values)
     }
 }

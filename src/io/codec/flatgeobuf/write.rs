@@ -8,7 +8,7 @@ use super::builder::{Builder, Open, Slot};
 use super::index::{self, Extent, NOTHING, merged};
 use super::schema::{self, ColumnType, MAGIC, kind};
 use crate::crs::Crs;
-use crate::data::{ContourLine, Layer, Shape, Value, ValueKind, polygons};
+use crate::data::{ContourLine, Layer, Shape, ShapeKind, Value, ValueKind, polygons};
 use crate::error::{Error, Result};
 use crate::io::bytes::output::{Destination, Output};
 use crate::io::codec::contour_summary::ContourSummary;
@@ -40,12 +40,7 @@ pub fn write_contours<'a>(
         let mut summary = ContourSummary::default();
         for line in lines.filter(|line| line.points.len() > 1) {
             summary.add(&line);
-            let vertices = line.points.iter().map(|&[x, y]| [x, y, line.level]);
-            let shape = Shape::Lines(vec![vertices.collect()]);
-            let values = [
-                Value::Whole(summary.lines as i64),
-                Value::Number(line.level),
-            ];
+            let (shape, values) = summary.last_record(&line);
             records.add(&shape, &values)?;
         }
         Ok(summary)
@@ -113,14 +108,16 @@ fn type_of(kind: ValueKind) -> ColumnType {
 
 /// Returns the type of the geometry of a shape; `None` if it has none.
 fn kind_of(shape: &Shape) -> Option<u8> {
-    let (single, several, count) = match shape {
-        Shape::Null => return None,
-        Shape::Points(points) => (kind::POINT, kind::MULTI_POINT, points.len()),
-        Shape::Lines(parts) => (kind::LINE, kind::MULTI_LINE, parts.len()),
-        Shape::Polygon(rings) => (kind::POLYGON, kind::MULTI_POLYGON, polygons(rings).len()),
-        Shape::Faces(faces) => (kind::POLYGON, kind::MULTI_POLYGON, faces.len()),
+    let (single, several) = match shape.kind() {
+        ShapeKind::Null => return None,
+        ShapeKind::Points => (kind::POINT, kind::MULTI_POINT),
+        ShapeKind::Lines => (kind::LINE, kind::MULTI_LINE),
+        ShapeKind::Polygon | ShapeKind::Faces => (kind::POLYGON, kind::MULTI_POLYGON),
     };
-    Some(if count == 1 { single } else { several })
+    Some(match shape.part_count() {
+        1 => single,
+        _ => several,
+    })
 }
 
 /// Returns the type of a layer with geometries of these types.
@@ -367,14 +364,11 @@ fn add_parts(builder: &mut Builder, open: Open, kind: u8, parts: &Parts, has_hei
     }
     if let Some(ends) = opens.next() {
         let mut end = 0;
-        let each: Vec<u32> = parts
-            .iter()
-            .map(|part| {
-                end += part.len() as u32;
-                end
-            })
-            .collect();
-        builder.words(ends, each.into_iter());
+        let each = parts.iter().map(|part| {
+            end += part.len() as u32;
+            end
+        });
+        builder.words(ends, each);
     }
 }
 

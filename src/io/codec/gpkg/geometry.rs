@@ -355,14 +355,3 @@ impl Form {
         true
     }
 }
-
-/// Returns the number of parts of a shape as they are written.
-pub(super) fn parts(shape: &Shape) -> usize {
-    match shape {
-        Shape::Null => 0,
-        Shape::Points(points) => points.len(),
-        Shape::Lines(parts) => parts.len(),
-        Shape::Polygon(rings) => polygons(rings).len(),
-        Shape::Faces(faces) => faces.len(),
-    }
-}

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use rusqlite::types::{ToSql, ToSqlOutput, ValueRef};
 use rusqlite::{Connection, OpenFlags, Statement, params, params_from_iter};
 
-use super::geometry::{self, Form, Kind};
+use super::geometry::{Form, Kind};
 use super::read::quoted;
 use crate::crs::Crs;
 use crate::data::{Bounds, ContourLine, Layer, Shape, ShapeKind, Value, ValueKind};
@@ -145,12 +145,7 @@ pub fn write_contours<'a>(
         let mut summary = ContourSummary::default();
         for line in lines.filter(|line| line.points.len() > 1) {
             let bounds = summary.add(&line);
-            let vertices = line.points.iter().map(|&[x, y]| [x, y, line.level]);
-            let shape = Shape::Lines(vec![vertices.collect()]);
-            let values = [
-                Value::Whole(summary.lines as i64),
-                Value::Number(line.level),
-            ];
+            let (shape, values) = summary.last_record(&line);
             layer.add(&shape, &bounds, &values)?;
         }
         Ok(summary)
@@ -213,7 +208,7 @@ fn add_shapes(database: &Connection, name: &str, layer: &Layer) -> Result<Vec<St
     let head = Head {
         form: Form {
             kind: kind(layer),
-            is_multiple: shapes().any(|shape| geometry::parts(shape) > 1),
+            is_multiple: shapes().any(|shape| shape.part_count() > 1),
             has_heights: shapes().flat_map(Shape::vertices).any(|p| p[2].is_finite()),
             system: system_of(crs),
         },
