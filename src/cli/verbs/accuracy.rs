@@ -1,13 +1,11 @@
 use std::io::Write;
-use std::path::PathBuf;
 
 use super::pair;
-use super::product::{self, Answer, Outcome, Product};
-use super::sample::plan;
+use super::product::{self, Answer, Outcome, Product, ProductPlan};
+use super::sample::surface_beside;
 use crate::cli::Exit;
 use crate::cli::input::args::AccuracyArgs;
-use crate::cli::input::outputs::{self, Outputs};
-use crate::cli::input::plan::SurfacePlan;
+use crate::cli::input::outputs::Target;
 use crate::cli::report::accuracy;
 use crate::cli::report::console::Console;
 use crate::cli::report::summary::of_columns;
@@ -20,7 +18,7 @@ use crate::terrain::Method;
 /// Compares a surface with checkpoints.
 pub(crate) fn run(args: &AccuracyArgs, console: &Console) -> Result<Exit> {
     let asked = Accuracy::of(args, console)?;
-    let surface = pair::read_one(&asked.plan[0], asked.method(), &args.memory, console)?;
+    let surface = pair::read_one(&asked, &args.memory, console)?;
     let json = args.json.then_some(product::in_lines as _);
     product::finish(&asked, &[surface], json, console)
 }
@@ -28,9 +26,8 @@ pub(crate) fn run(args: &AccuracyArgs, console: &Console) -> Result<Exit> {
 /// A comparison with checkpoints that is asked for.
 pub(super) struct Accuracy<'a> {
     args: &'a AccuracyArgs,
-    plan: [SurfacePlan; 1],
-    outputs: Outputs<()>,
-    reads: Vec<PathBuf>,
+    plan: ProductPlan,
+    targets: Vec<Target<()>>,
 }
 
 impl<'a> Accuracy<'a> {
@@ -39,33 +36,25 @@ impl<'a> Accuracy<'a> {
     /// # Errors
     /// If files are missing, options do not go together or a table cannot be written.
     pub(super) fn of(args: &'a AccuracyArgs, console: &Console) -> Result<Self> {
-        let (plan, reads) = plan(&args.surface, &args.checkpoints, console)?;
+        let surface = surface_beside(&args.surface, &args.checkpoints, console)?;
         let output = pair::output(args.output.iter().chain(&args.histogram), args.overwrite);
-        let outputs = outputs::resolve(&output, TABLES, &reads)?;
+        let checkpoints = args.checkpoints.clone();
+        let (plan, targets) = ProductPlan::resolve(vec![surface], [checkpoints], &output, TABLES)?;
         Ok(Accuracy {
             args,
-            plan: [plan],
-            outputs,
-            reads,
+            plan,
+            targets,
         })
     }
 }
 
 impl Product for Accuracy<'_> {
-    fn surfaces(&self) -> &[SurfacePlan] {
+    fn plan(&self) -> &ProductPlan {
         &self.plan
     }
 
     fn method(&self) -> Method {
         self.args.method.into()
-    }
-
-    fn reads(&self) -> Vec<PathBuf> {
-        self.reads.clone()
-    }
-
-    fn writes(&self) -> Vec<PathBuf> {
-        self.outputs.files()
     }
 
     fn make(
@@ -74,18 +63,13 @@ impl Product for Accuracy<'_> {
         set: &mut OutputSet,
         context: &Context,
     ) -> Result<Outcome> {
-        let Accuracy {
-            args,
-            plan: [plan],
-            outputs,
-            ..
-        } = self;
+        let args = self.args;
         let [surface] = surfaces else {
             return Err(pair::no_surface());
         };
         let options = AccuracyOptions {
             read: args.surface.read.options(),
-            assign: pair::assigned(plan),
+            assign: self.plan.assigned(),
             group_by: args.group_by.clone(),
             vegetated: args.vegetated.clone(),
             groups: Vec::new(),
@@ -96,7 +80,7 @@ impl Product for Accuracy<'_> {
         };
         let checkpoints = Input::File(args.checkpoints.clone());
         let product = run::accuracy(surface, &checkpoints, &options, context)?;
-        for target in &outputs.targets {
+        for target in &self.targets {
             let is_of_bins = args
                 .histogram
                 .as_ref()

@@ -1,10 +1,8 @@
-use std::path::PathBuf;
-
 use super::pair;
-use super::product::{self, Answer, Outcome, Product};
+use super::product::{self, Answer, Outcome, Product, ProductPlan};
 use crate::cli::Exit;
 use crate::cli::input::args::CompareArgs;
-use crate::cli::input::outputs::{self, Format, Outputs, formats_of};
+use crate::cli::input::outputs::{Format, Target, formats_of};
 use crate::cli::input::plan::{SurfacePlan, frame};
 use crate::cli::report::comparison;
 use crate::cli::report::console::Console;
@@ -25,10 +23,9 @@ enum Written {
 pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<Exit> {
     let asked = Comparison::of(args, None, console)?;
     let surfaces = pair::read(
-        &asked.plans,
+        &asked,
         ["surface", "minus"],
         &args.surface,
-        asked.method(),
         &args.memory,
         console,
     )?;
@@ -39,10 +36,9 @@ pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<Exit> {
 /// A comparison that is asked for.
 pub(super) struct Comparison<'a> {
     args: &'a CompareArgs,
-    plans: Vec<SurfacePlan>,
     options: CompareOptions,
-    outputs: Outputs<Written>,
-    reads: Vec<PathBuf>,
+    plan: ProductPlan,
+    targets: Vec<Target<Written>>,
 }
 
 impl<'a> Comparison<'a> {
@@ -65,45 +61,34 @@ impl<'a> Comparison<'a> {
             [_, _] => pair::refuse_tables(&args.surface, "compare")?,
             [_, _, more, ..] => return Err(pair::third(more, "two surfaces")),
         }
-        let plans = SurfacePlan::resolve_each(&args.surface, given, console)?;
-        let reads: Vec<PathBuf> = pair::files(&plans)
-            .chain(args.frame.align_to.clone())
-            .collect();
+        let surfaces = SurfacePlan::resolve_each(&args.surface, given, console)?;
         let output = pair::output(&args.output, args.overwrite);
-        let outputs = outputs::resolve(&output, &formats(), &reads)?;
+        let aligned_to = args.frame.align_to.clone();
+        let (plan, targets) = ProductPlan::resolve(surfaces, aligned_to, &output, &formats())?;
         let named = |i: usize| args.surface.inputs.get(i).cloned().unwrap_or_default();
         let options = CompareOptions {
             frame: args.overviews.of(frame(&args.frame)?),
             method: args.method.into(),
             worst: args.worst,
-            areas: areas(args, &outputs)?,
+            areas: areas(args, &targets)?,
             names: [named(0), named(1)],
         };
         Ok(Comparison {
             args,
-            plans,
             options,
-            outputs,
-            reads,
+            plan,
+            targets,
         })
     }
 }
 
 impl Product for Comparison<'_> {
-    fn surfaces(&self) -> &[SurfacePlan] {
-        &self.plans
+    fn plan(&self) -> &ProductPlan {
+        &self.plan
     }
 
     fn method(&self) -> Method {
         self.options.method
-    }
-
-    fn reads(&self) -> Vec<PathBuf> {
-        self.reads.clone()
-    }
-
-    fn writes(&self) -> Vec<PathBuf> {
-        self.outputs.files()
     }
 
     fn make(
@@ -116,7 +101,7 @@ impl Product for Comparison<'_> {
             return Err(pair::no_surface());
         };
         let product = run::compare([first, second], &self.options, context)?;
-        for target in &self.outputs.targets {
+        for target in &self.targets {
             let file = target.within(set);
             match (target.kind, &product.areas) {
                 (Written::Areas, Some(areas)) => areas.write(file, context)?,
@@ -146,9 +131,8 @@ fn formats() -> Vec<Format<Written>> {
 ///
 /// # Errors
 /// If a file of areas is named, but no height.
-fn areas(args: &CompareArgs, outputs: &Outputs<Written>) -> Result<Option<AreaOptions>> {
-    let mut targets = outputs.targets.iter();
-    let file = targets.find(|target| target.kind == Written::Areas);
+fn areas(args: &CompareArgs, targets: &[Target<Written>]) -> Result<Option<AreaOptions>> {
+    let file = targets.iter().find(|target| target.kind == Written::Areas);
     match (args.changed, file) {
         (None, Some(target)) => Err(Error::usage("polygons of what differs by which height?")
             .in_file(&target.path)

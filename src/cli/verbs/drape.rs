@@ -3,11 +3,11 @@ use std::path::PathBuf;
 use serde_json::{Value, json};
 
 use super::pair;
-use super::product::{self, Answer, Outcome, Product};
+use super::product::{self, Answer, Outcome, Product, ProductPlan};
 use crate::cli::Exit;
 use crate::cli::input::args::DrapeArgs;
 use crate::cli::input::inputs;
-use crate::cli::input::outputs::{self, Outputs};
+use crate::cli::input::outputs::{Target, formats_of};
 use crate::cli::input::plan::SurfacePlan;
 use crate::cli::report::console::Console;
 use crate::cli::report::summary::counted;
@@ -20,7 +20,7 @@ use crate::run::{self, Context, DrapeOptions, DrapeProduct, Input, SurfaceProduc
 /// Drapes lines over a surface.
 pub(crate) fn run(args: &DrapeArgs, console: &Console) -> Result<Exit> {
     let drape = Drape::of(args, console)?;
-    let surface = pair::read_one(&drape.plan[0], drape.method(), &args.memory, console)?;
+    let surface = pair::read_one(&drape, &args.memory, console)?;
     let json = args.json.then_some(product::in_lines as _);
     product::finish(&drape, &[surface], json, console)
 }
@@ -28,9 +28,8 @@ pub(crate) fn run(args: &DrapeArgs, console: &Console) -> Result<Exit> {
 /// Lines that are to be draped.
 pub(super) struct Drape<'a> {
     args: &'a DrapeArgs,
-    plan: [SurfacePlan; 1],
-    outputs: Outputs<()>,
-    reads: Vec<PathBuf>,
+    plan: ProductPlan,
+    targets: Vec<Target<()>>,
 }
 
 impl<'a> Drape<'a> {
@@ -41,31 +40,21 @@ impl<'a> Drape<'a> {
     pub(super) fn of(args: &'a DrapeArgs, console: &Console) -> Result<Self> {
         inputs::require([&args.lines])?;
         pair::refuse_tables(&args.surface, "drape")?;
-        let plan = SurfacePlan::resolve(&args.surface, console)?;
-        let mut reads = plan.targets.with_lists(plan.request.files());
-        reads.push(args.lines.clone());
-        let formats = outputs::formats_of(Formats::Lines, |_| ());
-        let outputs = outputs::resolve(&args.output, &formats, &reads)?;
+        let surface = SurfacePlan::resolve(&args.surface, console)?;
+        let formats = formats_of(Formats::Lines, |_| ());
+        let lines = args.lines.clone();
+        let (plan, targets) = ProductPlan::resolve(vec![surface], [lines], &args.output, &formats)?;
         Ok(Drape {
             args,
-            plan: [plan],
-            outputs,
-            reads,
+            plan,
+            targets,
         })
     }
 }
 
 impl Product for Drape<'_> {
-    fn surfaces(&self) -> &[SurfacePlan] {
+    fn plan(&self) -> &ProductPlan {
         &self.plan
-    }
-
-    fn reads(&self) -> Vec<PathBuf> {
-        self.reads.clone()
-    }
-
-    fn writes(&self) -> Vec<PathBuf> {
-        self.outputs.files()
     }
 
     fn make(
@@ -74,18 +63,13 @@ impl Product for Drape<'_> {
         set: &mut OutputSet,
         context: &Context,
     ) -> Result<Outcome> {
-        let Drape {
-            args,
-            plan: [plan],
-            outputs,
-            ..
-        } = self;
+        let args = self.args;
         let [surface] = surfaces else {
             return Err(pair::no_surface());
         };
         let options = DrapeOptions {
             lines: Input::File(args.lines.clone()),
-            assign: pair::assigned(plan),
+            assign: self.plan.assigned(),
             step: args.step,
             name: args
                 .surface
@@ -95,7 +79,7 @@ impl Product for Drape<'_> {
                 .unwrap_or_else(|| PathBuf::from("of lines")),
         };
         let product = run::drape(surface, &options, context)?;
-        for target in &outputs.targets {
+        for target in &self.targets {
             product.write(target.within(set), context)?;
         }
         let (parts, vertices) = sizes(&product.layer);

@@ -2,21 +2,13 @@
 
 use std::path::PathBuf;
 
+use super::product::Product;
 use crate::cli::input::args::{MemoryArgs, OutputArgs, SurfaceArgs};
 use crate::cli::input::plan::SurfacePlan;
 use crate::cli::report::console::Console;
 use crate::cli::report::summary::print_surface;
-use crate::crs::Crs;
 use crate::error::{Error, Result};
 use crate::run::{self, Source, SurfaceProduct, SurfaceReport};
-use crate::terrain::Method;
-
-/// Returns the files that are read for surfaces.
-pub(super) fn files(plans: &[SurfacePlan]) -> impl Iterator<Item = PathBuf> + '_ {
-    plans
-        .iter()
-        .flat_map(|plan| plan.targets.with_lists(plan.request.files()))
-}
 
 /// Returns the options of outputs for these files, of which there may be none.
 pub(super) fn output<'a>(
@@ -29,27 +21,20 @@ pub(super) fn output<'a>(
     }
 }
 
-/// Returns the coordinate system of lines or points that are read with a surface: the assigned
-/// one. With another system as the target, that is of the points of the surface alone.
-pub(super) fn assigned(plan: &SurfacePlan) -> Option<Crs> {
-    let systems = &plan.request.systems;
-    match systems.target {
-        None => systems.assign.clone(),
-        Some(_) => None,
-    }
-}
-
-/// Builds or reads each surface for heights by a method, and prints its role and what it is. The
-/// memory is shared by those that are built.
+/// Builds or reads each surface of a product, and prints its role and what it is. The memory is
+/// shared by those that are built.
+///
+/// # Errors
+/// Those of [`run::open_surface`].
 pub(super) fn read(
-    plans: &[SurfacePlan],
+    product: &dyn Product,
     roles: impl IntoIterator<Item = &'static str>,
     args: &SurfaceArgs,
-    method: Method,
     memory: &MemoryArgs,
     console: &Console,
 ) -> Result<Vec<SurfaceProduct>> {
     let context = console.context();
+    let (plans, method) = (&product.plan().surfaces, product.method());
     let is_built = |plan: &SurfacePlan| matches!(plan.request.source, Source::Points(_));
     let built = plans.iter().filter(|plan| is_built(plan)).count() as u64;
     let memory_of = |plan: &SurfacePlan| {
@@ -58,26 +43,29 @@ pub(super) fn read(
     };
     let named = roles.into_iter().zip(&args.inputs);
     let each = plans.iter().zip(named).map(|(plan, (role, input))| {
-        let mut product = run::open_surface(&plan.request, method, memory_of(plan), &context)?;
+        let mut surface = run::open_surface(&plan.request, method, memory_of(plan), &context)?;
         console.line(format_args!("{role:<11} {}", input.display()));
-        print_surface(&SurfaceReport::take(&mut product)?, console);
-        Ok(product)
+        print_surface(&SurfaceReport::take(&mut surface)?, console);
+        Ok(surface)
     });
     each.collect()
 }
 
-/// Builds or reads the only surface of a verb for heights by a method, and prints what it is.
+/// Builds or reads the only surface of a product, and prints what it is.
 ///
 /// # Errors
 /// Those of [`run::open_surface`].
 pub(super) fn read_one(
-    plan: &SurfacePlan,
-    method: Method,
+    product: &dyn Product,
     memory: &MemoryArgs,
     console: &Console,
 ) -> Result<SurfaceProduct> {
     let context = console.context();
-    let mut surface = run::open_surface(&plan.request, method, memory.memory, &context)?;
+    let Some(plan) = product.plan().surfaces.first() else {
+        return Err(no_surface());
+    };
+    let (request, method) = (&plan.request, product.method());
+    let mut surface = run::open_surface(request, method, memory.memory, &context)?;
     print_surface(&SurfaceReport::take(&mut surface)?, console);
     Ok(surface)
 }

@@ -5,20 +5,24 @@ use std::path::PathBuf;
 use serde_json::Value;
 
 use crate::cli::Exit;
+use crate::cli::input::args::OutputArgs;
+use crate::cli::input::outputs::{self, Format, Target};
 use crate::cli::input::plan::SurfacePlan;
 use crate::cli::report::console::Console;
 use crate::cli::report::escape;
 use crate::cli::report::stdout::print;
 use crate::cli::report::written::print_file;
+use crate::crs::Crs;
 use crate::error::{Error, Result};
 use crate::io::OutputSet;
+use crate::run::targets::ProductFiles;
 use crate::run::{Context, Summary, SurfaceProduct};
 use crate::terrain::Method;
 
 /// A verb whose options are understood and whose outputs are checked.
 pub(super) trait Product {
-    /// Returns the surfaces that it is made of, the one to which most options belong first.
-    fn surfaces(&self) -> &[SurfacePlan];
+    /// Returns its surfaces and its files.
+    fn plan(&self) -> &ProductPlan;
 
     /// Returns how heights between vertices are computed.
     fn method(&self) -> Method {
@@ -30,12 +34,6 @@ pub(super) trait Product {
         None
     }
 
-    /// Returns all files that are read.
-    fn reads(&self) -> Vec<PathBuf>;
-
-    /// Returns all files that are written.
-    fn writes(&self) -> Vec<PathBuf>;
-
     /// Makes it of the surfaces, and adds its files to a set.
     ///
     /// # Errors
@@ -46,6 +44,49 @@ pub(super) trait Product {
         set: &mut OutputSet,
         context: &Context,
     ) -> Result<Outcome>;
+}
+
+/// The surfaces and the files of a product.
+#[derive(Debug)]
+pub(super) struct ProductPlan {
+    /// What it is made of, the surface to which most options belong first.
+    pub(super) surfaces: Vec<SurfacePlan>,
+    /// All files that are read and written.
+    pub(super) files: ProductFiles,
+}
+
+impl ProductPlan {
+    /// Returns the plan of a product that reads its surfaces and `others`, and its outputs.
+    ///
+    /// # Errors
+    /// Those of [`outputs::resolve`].
+    pub(super) fn resolve<F: Copy>(
+        surfaces: Vec<SurfacePlan>,
+        others: impl IntoIterator<Item = PathBuf>,
+        output: &OutputArgs,
+        formats: &[Format<F>],
+    ) -> Result<(Self, Vec<Target<F>>)> {
+        let of_surfaces = surfaces
+            .iter()
+            .flat_map(|plan| plan.targets.with_lists(plan.request.files()));
+        let reads: Vec<PathBuf> = of_surfaces.chain(others).collect();
+        let outputs = outputs::resolve(output, formats, &reads)?;
+        let files = ProductFiles {
+            writes: outputs.files(),
+            reads,
+        };
+        Ok((ProductPlan { surfaces, files }, outputs.targets))
+    }
+
+    /// Returns the coordinate system of lines or points that are read with the first surface: the
+    /// assigned one. With another system as the target, that is of the points of the surface alone.
+    pub(super) fn assigned(&self) -> Option<Crs> {
+        let systems = &self.surfaces.first()?.request.systems;
+        match systems.target {
+            None => systems.assign.clone(),
+            Some(_) => None,
+        }
+    }
 }
 
 /// What is reported of a product.

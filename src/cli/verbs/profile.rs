@@ -1,11 +1,11 @@
 use std::path::PathBuf;
 
 use super::pair;
-use super::product::{self, Answer, Outcome, Product};
+use super::product::{self, Answer, Outcome, Product, ProductPlan};
 use crate::cli::Exit;
 use crate::cli::input::args::ProfileArgs;
 use crate::cli::input::inputs;
-use crate::cli::input::outputs::{self, Outputs};
+use crate::cli::input::outputs::Target;
 use crate::cli::input::plan::SurfacePlan;
 use crate::cli::report::console::Console;
 use crate::cli::report::profiles;
@@ -16,16 +16,14 @@ use crate::run::targets::PROFILES;
 use crate::run::{
     self, Context, Input, ProfileOptions, SectionOptions, SectionStations, SurfaceProduct,
 };
-use crate::terrain::Method;
 
 /// Computes heights along lines, or along sections across them.
 pub(crate) fn run(args: &ProfileArgs, console: &Console) -> Result<Exit> {
     let asked = ProfileAsked::of(args, None, console)?;
     let surfaces = pair::read(
-        &asked.plans,
+        &asked,
         std::iter::repeat("surface"),
         &args.surface,
-        Method::Linear,
         &args.memory,
         console,
     )?;
@@ -36,10 +34,9 @@ pub(crate) fn run(args: &ProfileArgs, console: &Console) -> Result<Exit> {
 /// Profiles that are asked for.
 pub(super) struct ProfileAsked<'a> {
     args: &'a ProfileArgs,
-    plans: Vec<SurfacePlan>,
     sections: Option<SectionOptions>,
-    outputs: Outputs<()>,
-    reads: Vec<PathBuf>,
+    plan: ProductPlan,
+    targets: Vec<Target<()>>,
 }
 
 impl<'a> ProfileAsked<'a> {
@@ -55,10 +52,10 @@ impl<'a> ProfileAsked<'a> {
         let sections = sections(args)?;
         require_plots(args)?;
         inputs::require([&args.along])?;
-        let plans = SurfacePlan::resolve_each(&args.surface, given, console)?;
-        let reads: Vec<PathBuf> = pair::files(&plans).chain([args.along.clone()]).collect();
+        let surfaces = SurfacePlan::resolve_each(&args.surface, given, console)?;
         let output = pair::output(&args.output, args.overwrite);
-        let outputs = outputs::resolve(&output, PROFILES, &reads)?;
+        let (plan, targets) =
+            ProductPlan::resolve(surfaces, [args.along.clone()], &output, PROFILES)?;
         if args.json && is_stdout_taken(args) {
             return Err(
                 Error::usage("a file and the object of --json cannot both be on stdout")
@@ -67,25 +64,16 @@ impl<'a> ProfileAsked<'a> {
         }
         Ok(ProfileAsked {
             args,
-            plans,
             sections,
-            outputs,
-            reads,
+            plan,
+            targets,
         })
     }
 }
 
 impl Product for ProfileAsked<'_> {
-    fn surfaces(&self) -> &[SurfacePlan] {
-        &self.plans
-    }
-
-    fn reads(&self) -> Vec<PathBuf> {
-        self.reads.clone()
-    }
-
-    fn writes(&self) -> Vec<PathBuf> {
-        self.outputs.files()
+    fn plan(&self) -> &ProductPlan {
+        &self.plan
     }
 
     fn make(
@@ -97,7 +85,7 @@ impl Product for ProfileAsked<'_> {
         let args = self.args;
         let options = ProfileOptions {
             along: Input::File(args.along.clone()),
-            assign: self.plans.first().and_then(pair::assigned),
+            assign: self.plan.assigned(),
             step: args.step,
             sections: self.sections.clone(),
             names: args.surface.inputs.clone(),
@@ -108,7 +96,7 @@ impl Product for ProfileAsked<'_> {
             datum: args.datum,
             title: args.title.clone(),
         };
-        for target in &self.outputs.targets {
+        for target in &self.targets {
             product.write(target.within(set), &plot)?;
         }
         let text = match is_stdout_taken(args) {

@@ -9,7 +9,7 @@ use super::accuracy::Accuracy;
 use super::asked::Asked;
 use super::compare::Comparison;
 use super::drape::Drape;
-use super::product::{Outcome, Product, in_lines};
+use super::product::{Outcome, Product, ProductPlan, in_lines};
 use super::profile::ProfileAsked;
 use super::sample::Sample;
 use super::volume::Volume;
@@ -165,6 +165,12 @@ struct PlannedProduct<'a> {
     surfaces: Vec<usize>,
 }
 
+impl PlannedProduct<'_> {
+    fn files(&self) -> &ProductFiles {
+        &self.product.plan().files
+    }
+}
+
 impl<'a> Planned<'a> {
     fn of(
         file: &RunFile,
@@ -184,7 +190,7 @@ impl<'a> Planned<'a> {
         for (words, verb) in &parsed.products {
             let product = product_of(verb, shared.as_ref(), console)
                 .map_err(|e| file.of_product(parsed.of_other_outputs(e, words), words))?;
-            let of_product = product.surfaces().iter();
+            let of_product = product.plan().surfaces.iter();
             let add = |plan: &SurfacePlan| {
                 surfaces.add(&plan.request, product.method(), product.needs_whole())
             };
@@ -196,18 +202,13 @@ impl<'a> Planned<'a> {
             });
         }
         require_one_reader(&list, &surfaces).map_err(|(words, e)| file.of_product(e, words))?;
-        let files = list
-            .iter()
-            .map(|PlannedProduct { product, .. }| ProductFiles {
-                writes: product.writes(),
-                reads: product.reads(),
-            });
-        let mut files: Vec<ProductFiles> = files.collect();
-        // Nobody writes it.
-        files.push(ProductFiles {
+        // No product writes it.
+        let run_file = ProductFiles {
             writes: Vec::new(),
             reads: file.name().map(PathBuf::from).into_iter().collect(),
-        });
+        };
+        let of_products = list.iter().map(PlannedProduct::files);
+        let files: Vec<&ProductFiles> = of_products.chain([&run_file]).collect();
         require_apart(&files).map_err(|(number, e)| match list.get(number) {
             Some(of) => file.of_product(e, of.words),
             None => e,
@@ -245,7 +246,7 @@ impl<'a> Planned<'a> {
                 "product     {} of {count}: {}{}",
                 number + 1,
                 words.verb,
-                listed(&product.writes())
+                listed(&product.plan().files.writes)
             ));
             let of = surfaces
                 .iter()
@@ -284,8 +285,8 @@ impl<'a> Planned<'a> {
         let product = |of: &PlannedProduct| PlannedFiles {
             verb: of.words.verb.clone(),
             surfaces: of.surfaces.clone(),
-            reads: of.product.reads(),
-            writes: of.product.writes(),
+            reads: of.files().reads.clone(),
+            writes: of.files().writes.clone(),
             command: command_line(&of.words.words),
         };
         let surfaces = (0..self.surfaces.len()).map(surface);
@@ -330,7 +331,7 @@ impl Done {
             };
             json!({
                 "verb": of.words.verb,
-                "files": texts(&of.product.writes()),
+                "files": texts(&of.files().writes),
                 "report": report,
             })
         };
@@ -364,18 +365,15 @@ fn require_one_reader<'a>(
 ) -> std::result::Result<(), (&'a ProductWords, Error)> {
     // The file, and the surface that is built of it; a product that reads it itself has none.
     let mut read: Vec<(PathBuf, Option<usize>)> = Vec::new();
-    for PlannedProduct {
-        words,
-        product,
-        surfaces: numbers,
-    } in list
-    {
+    for of_product in list {
         let of_surface = |&number: &usize| {
             let files = surfaces.files(number).into_iter();
             files.map(move |file| (file, Some(number)))
         };
-        let mut own: Vec<(PathBuf, Option<usize>)> = numbers.iter().flat_map(of_surface).collect();
-        let others = product.reads().into_iter().map(|file| (file, None));
+        let mut own: Vec<(PathBuf, Option<usize>)> =
+            of_product.surfaces.iter().flat_map(of_surface).collect();
+        let others = of_product.files().reads.iter().cloned();
+        let others = others.map(|file| (file, None));
         let others: Vec<_> = others
             .filter(|(file, _)| own.iter().all(|(known, _)| known != file))
             .collect();
@@ -391,19 +389,16 @@ fn require_one_reader<'a>(
                     "`{}` is named twice, and can be read once",
                     file.display()
                 ));
-                return Err((*words, error.cure("name a file for one of them")));
+                return Err((of_product.words, error.cure("name a file for one of them")));
             }
         }
         read.extend(own);
-        if let Some(path) = product
-            .writes()
-            .iter()
-            .find(|path| is_standard_output(path))
-        {
+        let mut writes = of_product.files().writes.iter();
+        if let Some(path) = writes.find(|path| is_standard_output(path)) {
             let error = Error::usage("the output of a run file is not the standard output")
                 .in_file(path)
                 .cure("name a file: those of all products appear at the end, or none");
-            return Err((*words, error));
+            return Err((of_product.words, error));
         }
     }
     Ok(())
@@ -432,7 +427,7 @@ fn product_of<'a>(
 /// What is written of a surface.
 struct Written {
     product: SharedProduct,
-    plan: [SurfacePlan; 1],
+    plan: ProductPlan,
 }
 
 impl Written {
@@ -441,19 +436,27 @@ impl Written {
             request, targets, ..
         }: Asked,
     ) -> Result<Self> {
-        let plan = SurfacePlan {
+        let surface = SurfacePlan {
             request: request.surface.clone(),
             targets: targets.clone(),
         };
+        let product = SharedProduct::new(request, targets)?;
+        let files = ProductFiles {
+            writes: product.writes(),
+            reads: product.reads(),
+        };
         Ok(Written {
-            product: SharedProduct::new(request, targets)?,
-            plan: [plan],
+            product,
+            plan: ProductPlan {
+                surfaces: vec![surface],
+                files,
+            },
         })
     }
 }
 
 impl Product for Written {
-    fn surfaces(&self) -> &[SurfacePlan] {
+    fn plan(&self) -> &ProductPlan {
         &self.plan
     }
 
@@ -463,14 +466,6 @@ impl Product for Written {
 
     fn needs_whole(&self) -> Option<Error> {
         self.product.needs_whole()
-    }
-
-    fn reads(&self) -> Vec<PathBuf> {
-        self.product.reads()
-    }
-
-    fn writes(&self) -> Vec<PathBuf> {
-        self.product.writes()
     }
 
     fn make(

@@ -1,14 +1,14 @@
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde_json::{Value, json};
 
 use super::pair;
-use super::product::{self, Answer, Outcome, Product};
+use super::product::{self, Answer, Outcome, Product, ProductPlan};
 use crate::cli::Exit;
 use crate::cli::input::args::{SampleArgs, SurfaceArgs};
 use crate::cli::input::inputs;
-use crate::cli::input::outputs::{self, Format, Outputs};
+use crate::cli::input::outputs::{Format, Target};
 use crate::cli::input::plan::SurfacePlan;
 use crate::cli::report::console::Console;
 use crate::cli::report::stdout::Stdout;
@@ -44,8 +44,8 @@ const fn format(extension: &'static str, companions: &'static [&'static str]) ->
 /// Adds heights and slopes of a surface to points.
 pub(crate) fn run(args: &SampleArgs, console: &Console) -> Result<Exit> {
     let asked = Sample::of(args, console)?;
-    let surface = pair::read_one(&asked.plan[0], asked.method(), &args.memory, console)?;
-    if !asked.outputs.targets.is_empty() {
+    let surface = pair::read_one(&asked, &args.memory, console)?;
+    if !asked.targets.is_empty() {
         let json = args.json.then_some(product::in_lines as _);
         return product::finish(&asked, &[surface], json, console);
     }
@@ -64,10 +64,9 @@ pub(crate) fn run(args: &SampleArgs, console: &Console) -> Result<Exit> {
 /// Points that values are to be added to.
 pub(super) struct Sample<'a> {
     args: &'a SampleArgs,
-    plan: [SurfacePlan; 1],
     add: Vec<SampledField>,
-    outputs: Outputs<()>,
-    reads: Vec<PathBuf>,
+    plan: ProductPlan,
+    targets: Vec<Target<()>>,
 }
 
 impl<'a> Sample<'a> {
@@ -76,15 +75,15 @@ impl<'a> Sample<'a> {
     /// # Errors
     /// If files are missing, options do not go together or the output cannot be written.
     pub(super) fn of(args: &'a SampleArgs, console: &Console) -> Result<Self> {
-        let (plan, reads) = plan(&args.surface, &args.at, console)?;
+        let surface = surface_beside(&args.surface, &args.at, console)?;
         let output = pair::output(&args.output, args.overwrite);
-        let outputs = outputs::resolve(&output, FORMATS, &reads)?;
+        let (plan, targets) =
+            ProductPlan::resolve(vec![surface], [args.at.clone()], &output, FORMATS)?;
         Ok(Sample {
             args,
-            plan: [plan],
             add: added(args)?,
-            outputs,
-            reads,
+            plan,
+            targets,
         })
     }
 
@@ -100,7 +99,7 @@ impl<'a> Sample<'a> {
             prefix: args.prefix.clone(),
             method: self.method(),
             read: args.surface.read.options(),
-            assign: pair::assigned(&self.plan[0]),
+            assign: self.plan.assigned(),
             surface: args.surface.inputs.first().cloned().unwrap_or_default(),
         };
         run::sample(surface, &args.at, &options, target, context)
@@ -108,20 +107,12 @@ impl<'a> Sample<'a> {
 }
 
 impl Product for Sample<'_> {
-    fn surfaces(&self) -> &[SurfacePlan] {
+    fn plan(&self) -> &ProductPlan {
         &self.plan
     }
 
     fn method(&self) -> Method {
         self.args.method.into()
-    }
-
-    fn reads(&self) -> Vec<PathBuf> {
-        self.reads.clone()
-    }
-
-    fn writes(&self) -> Vec<PathBuf> {
-        self.outputs.files()
     }
 
     fn make(
@@ -130,7 +121,7 @@ impl Product for Sample<'_> {
         set: &mut OutputSet,
         context: &Context,
     ) -> Result<Outcome> {
-        let ([surface], [target]) = (surfaces, &self.outputs.targets[..]) else {
+        let ([surface], [target]) = (surfaces, &self.targets[..]) else {
             return Err(Error::usage("no output is named").cure("name it with --output"));
         };
         let report = self.sample(surface, SampleTarget::File(target.within(set)), context)?;
@@ -155,16 +146,16 @@ fn lines_of(report: &SampleReport) -> Vec<String> {
         .collect()
 }
 
-/// Returns the request for a surface that is compared with the points of a file, and all files that
-/// are read. `--columns` is for all inputs of text, `--partial` for all inputs.
+/// Returns the request for a surface that is compared with the points of a file. `--columns` is for
+/// all inputs of text, `--partial` for all inputs.
 ///
 /// # Errors
 /// If a file does not exist, or the options do not go together.
-pub(super) fn plan(
+pub(super) fn surface_beside(
     args: &SurfaceArgs,
     points: &Path,
     console: &Console,
-) -> Result<(SurfacePlan, Vec<PathBuf>)> {
+) -> Result<SurfacePlan> {
     let is_stdin = |path: &Path| path.as_os_str() == STDIN;
     if !is_stdin(points) {
         inputs::require([&points.to_path_buf()])?;
@@ -194,10 +185,7 @@ pub(super) fn plan(
         args.read.parse = None;
         args.read.partial = false;
     }
-    let plan = SurfacePlan::resolve(&args, console)?;
-    let mut read = plan.targets.with_lists(plan.request.files());
-    read.push(points.to_path_buf());
-    Ok((plan, read))
+    SurfacePlan::resolve(&args, console)
 }
 
 /// Returns what is added, each field once.

@@ -1,12 +1,11 @@
 use std::io::Write;
-use std::path::PathBuf;
 
 use super::pair;
-use super::product::{self, Answer, Outcome, Product};
+use super::product::{self, Answer, Outcome, Product, ProductPlan};
 use crate::cli::Exit;
 use crate::cli::input::args::VolumeArgs;
 use crate::cli::input::inputs;
-use crate::cli::input::outputs::{self, Outputs};
+use crate::cli::input::outputs::Target;
 use crate::cli::input::plan::SurfacePlan;
 use crate::cli::report::console::Console;
 use crate::cli::report::volumes;
@@ -14,16 +13,14 @@ use crate::error::{Error, Result};
 use crate::io::OutputSet;
 use crate::run::targets::{TABLES, add_table};
 use crate::run::{self, Bulking, Context, Input, SurfaceProduct, VolumeBase, VolumeOptions};
-use crate::terrain::Method;
 
 /// Computes cut and fill between two surfaces, or above levels.
 pub(crate) fn run(args: &VolumeArgs, console: &Console) -> Result<Exit> {
     let volume = Volume::of(args, None, console)?;
     let surfaces = pair::read(
-        &volume.plans,
+        &volume,
         ["surface", "base"],
         &args.surface,
-        Method::Linear,
         &args.memory,
         console,
     )?;
@@ -34,10 +31,9 @@ pub(crate) fn run(args: &VolumeArgs, console: &Console) -> Result<Exit> {
 /// Volumes that are asked for.
 pub(super) struct Volume<'a> {
     args: &'a VolumeArgs,
-    plans: Vec<SurfacePlan>,
     levels: Vec<f64>,
-    outputs: Outputs<()>,
-    reads: Vec<PathBuf>,
+    plan: ProductPlan,
+    targets: Vec<Target<()>>,
 }
 
 impl<'a> Volume<'a> {
@@ -52,31 +48,21 @@ impl<'a> Volume<'a> {
     ) -> Result<Self> {
         let levels = levels(args)?;
         inputs::require(&args.within)?;
-        let plans = SurfacePlan::resolve_each(&args.surface, given, console)?;
-        let reads: Vec<PathBuf> = pair::files(&plans).chain(args.within.clone()).collect();
+        let surfaces = SurfacePlan::resolve_each(&args.surface, given, console)?;
         let output = pair::output(&args.output, args.overwrite);
-        let outputs = outputs::resolve(&output, TABLES, &reads)?;
+        let (plan, targets) = ProductPlan::resolve(surfaces, args.within.clone(), &output, TABLES)?;
         Ok(Volume {
             args,
-            plans,
             levels,
-            outputs,
-            reads,
+            plan,
+            targets,
         })
     }
 }
 
 impl Product for Volume<'_> {
-    fn surfaces(&self) -> &[SurfacePlan] {
-        &self.plans
-    }
-
-    fn reads(&self) -> Vec<PathBuf> {
-        self.reads.clone()
-    }
-
-    fn writes(&self) -> Vec<PathBuf> {
-        self.outputs.files()
+    fn plan(&self) -> &ProductPlan {
+        &self.plan
     }
 
     fn make(
@@ -95,7 +81,7 @@ impl Product for Volume<'_> {
         let options = VolumeOptions {
             within: args.within.clone().map(Input::File),
             name_by: args.name_by.clone(),
-            assign: self.plans.first().and_then(pair::assigned),
+            assign: self.plan.assigned(),
             unit: args.unit.map(Into::into),
             bulking: (args.swell.is_some() || args.shrink.is_some()).then(|| Bulking {
                 swell: args.swell.unwrap_or(1.0),
@@ -107,7 +93,7 @@ impl Product for Volume<'_> {
             return Err(pair::no_surface());
         };
         let product = run::volume(surface, base, &options, context)?;
-        for target in &self.outputs.targets {
+        for target in &self.targets {
             add_table(&target.path, set, |out| {
                 out.write_all(volumes::csv(&product).as_bytes())
             })?;

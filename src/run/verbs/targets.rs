@@ -511,7 +511,7 @@ pub(crate) struct ProductFiles {
 /// Makes sure that what each of several products writes is not written or read by another one.
 /// Returns an error with the number of the product that it is about.
 #[cfg(feature = "cli")]
-pub(crate) fn require_apart(products: &[ProductFiles]) -> std::result::Result<(), (usize, Error)> {
+pub(crate) fn require_apart(products: &[&ProductFiles]) -> std::result::Result<(), (usize, Error)> {
     let mut written: HashSet<PathBuf> = HashSet::new();
     for (number, product) in products.iter().enumerate() {
         // A link is not followed here: of two products with one name, only one would be left.
