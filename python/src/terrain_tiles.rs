@@ -16,32 +16,32 @@ use crate::work::{self, Call};
 /// numbers of tiles, bytes, vertices, triangles, heights, and heights beyond the bound.
 type Level = (u8, [f64; 3], [u64; 6]);
 
-/// The options: format, tiling, bound, finest level, height around the surface, what is added to
-/// heights, and true if tiles are not compressed.
-type Options = (
-    String,
-    String,
-    Option<f64>,
-    Option<u8>,
-    Option<f64>,
-    Option<f64>,
-    bool,
-);
+/// What is written, under the names in Python.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct TerrainArguments {
+    format: String,
+    tiling: String,
+    max_error: Option<f64>,
+    max_level: Option<u8>,
+    fill: Option<f64>,
+    vertical_offset: Option<f64>,
+    no_gzip: bool,
+}
 
 /// Writes a surface as levels of terrain tiles.
 #[pyfunction]
 pub(crate) fn terrain_tiles(
     py: Python<'_>,
     surface: PyRef<'_, Surface>,
-    options: Options,
+    given: TerrainArguments,
     folder: (PathBuf, bool),
     call: Call,
 ) -> PyResult<Vec<Level>> {
-    let (format, tiling, max_error, finest, fill, vertical_offset, plain) = options;
     let options = TerrainTilesOptions {
         format: requests::choose(
             "format",
-            &format,
+            &given.format,
             &[
                 ("quantized-mesh", TerrainFormat::QuantizedMesh),
                 ("3dtiles", TerrainFormat::Tiles3d),
@@ -50,18 +50,18 @@ pub(crate) fn terrain_tiles(
         rule: PyramidRule {
             tiling: requests::choose(
                 "tiling",
-                &tiling,
+                &given.tiling,
                 &[
                     ("geographic", Tiling::Geographic),
                     ("mercator", Tiling::WebMercator),
                 ],
             )?,
-            finest,
-            max_error,
-            fill,
+            finest: given.max_level,
+            max_error: given.max_error,
+            fill: given.fill,
         },
-        vertical_offset,
-        plain,
+        vertical_offset: given.vertical_offset,
+        plain: given.no_gzip,
         name: None,
     };
     let surface = surface.product();

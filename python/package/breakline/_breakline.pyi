@@ -185,7 +185,7 @@ def drape(
 ) -> list[list[NDArray[np.float64]]]: ...
 def terrain_tiles(
     surface: Surface,
-    options: tuple[str, str, Optional[float], Optional[int], Optional[float], Optional[float], bool],
+    given: dict[str, Any],
     folder: tuple[str, bool],
     call: _Call,
 ) -> list[tuple[int, tuple[float, float, float], tuple[int, int, int, int, int, int]]]: ...

@@ -154,8 +154,8 @@ def compare(
     refuse_kept(surface)
     by = _inputs.name(method, "method")
     frame = frame_of(resolution, extent, align_to)
-    height = None if changed is None else _inputs.number(changed, "changed")
-    least = None if min_area is None else _inputs.number(min_area, "min_area")
+    height = _inputs.optional_number(changed, "changed")
+    least = _inputs.optional_number(min_area, "min_area")
     if least is not None and (height is None or not least >= 0):
         raise usage("min_area is not the size of areas", min_area, "pass a number from 0 on, together with changed")
     places = _inputs.whole_numbers([worst], "worst", 1_000_000)[0]

@@ -124,24 +124,25 @@ def profile(
     sections = None
     if is_across:
         at = [] if stations is None else [_inputs.number(value, "stations") for value in stations]
-        every = None if interval is None else _inputs.number(interval, "interval")
+        every = _inputs.optional_number(interval, "interval")
         widths = [0.0 if value is None else _inputs.number(value, name) for name, value in [("left", left), ("right", right)]]
         first = _inputs.number(0.0 if start is None else start, "start")
         turned = _inputs.number(90.0 if angle is None else angle, "angle")
         shown = _inputs.name("0+000" if station_format is None else station_format, "station_format")
         sections = (every, at, first, widths, turned, shown)
     plot = (
-        None if exaggeration is None else _inputs.number(exaggeration, "exaggeration"),
-        None if datum is None else _inputs.number(datum, "datum"),
+        _inputs.optional_number(exaggeration, "exaggeration"),
+        _inputs.optional_number(datum, "datum"),
         None if title is None else str(title),
     )
     refuse_kept(surface)
     lines = _one_layer(along, "along")
     found = surfaces_of(list(surfaces), surface, memory, threads, progress)
     names = names_of([(points, f"surface {number}") for number, points in enumerate(surfaces, 1)])
+    spacing = _inputs.optional_number(step, "step")
     with call(threads, progress) as request:
         rows, _, _ = _breakline.profile(
-            found, lines, assigned(surface), _step(step), sections, plot, names, _outputs(output, overwrite), request
+            found, lines, assigned(surface), spacing, sections, plot, names, _outputs(output, overwrite), request
         )
     return [Profile(record, part, at, name, *ends, of) for record, part, at, name, ends, of in rows]
 
@@ -195,9 +196,11 @@ def drape(
     refuse_kept(surface)
     layer = _one_layer(lines, "lines")
     found = surface_of(points, surface, threads, progress, build=asked(memory))
+    spacing = _inputs.optional_number(step, "step")
+    name = names_of([(points, "the surface")])[0]
     with call(threads, progress) as request:
         return _breakline.drape(
-            found, layer, assigned(surface), _step(step), names_of([(points, "the surface")])[0], _outputs(output, overwrite), request
+            found, layer, assigned(surface), spacing, name, _outputs(output, overwrite), request
         )
 
 
@@ -207,11 +210,6 @@ def _one_layer(lines: Any, parameter: str) -> Any:
     if len(found) != 1:
         raise usage(f"{parameter} is lines of one layer", len(found), "pass one file, or one list of lines")
     return found[0]
-
-
-def _step(step: Any) -> Optional[float]:
-    """Return a step as a number."""
-    return None if step is None else _inputs.number(step, "step")
 
 
 def _outputs(output: Any, overwrite: bool) -> "tuple[list[str], bool]":

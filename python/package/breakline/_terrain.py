@@ -21,7 +21,7 @@ class TerrainLevel(NamedTuple):
     bound : float
         No vertex of the surface should be further from the triangles than this, in meters.
     within : float
-        No vertex of the surface is further from them: the bound, or more. Then there is a warning, too.
+        No vertex of the surface is further from the triangles than this, in meters: the bound, or more with a warning.
     largest : float
         The largest distance of a vertex, in meters.
     tiles, bytes, vertices, triangles : int
@@ -112,19 +112,17 @@ def terrain_tiles(
     """
     refuse_kept(surface)
     found = surface_of(points, surface, threads, progress, build=asked(memory))
-    numbers = {"max_error": max_error, "fill": fill, "vertical_offset": vertical_offset}
-    given = {name: None if value is None else _inputs.number(value, name) for name, value in numbers.items()}
-    options = (
-        format,
-        tiling,
-        given["max_error"],
-        _level(max_level),
-        given["fill"],
-        given["vertical_offset"],
-        bool(no_gzip),
-    )
+    given = {
+        "format": format,
+        "tiling": tiling,
+        "max_error": _inputs.optional_number(max_error, "max_error"),
+        "fill": _inputs.optional_number(fill, "fill"),
+        "vertical_offset": _inputs.optional_number(vertical_offset, "vertical_offset"),
+        "max_level": _level(max_level),
+        "no_gzip": bool(no_gzip),
+    }
     with call(threads, progress) as request:
-        levels = _breakline.terrain_tiles(found, options, (os.fspath(output), bool(overwrite)), request)
+        levels = _breakline.terrain_tiles(found, given, (os.fspath(output), bool(overwrite)), request)
     return [
         TerrainLevel(level, *of, tiles, size, vertices, triangles, heights, beyond)
         for level, of, (tiles, size, vertices, triangles, heights, beyond) in levels

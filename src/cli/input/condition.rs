@@ -9,14 +9,14 @@ use crate::error::{Error, Result};
 use crate::io::{formats, layer};
 
 const CURE: &str = "write it just after the layer whose records it chooses, as in --breaklines \
-    edges.gpkg:lines --where \"kind = 'toe'\"; among several inputs, write \"FILE where kind = 'toe'\" \
-    as one word";
+    edges.gpkg:lines --where \"kind = 'toe'\"; among several inputs, write \
+    \"FILE where kind = 'toe'\" as one word";
 
 /// Adds a condition to the layer before it among the words of a verb: the value of an option, or
 /// the only input so far. The result is the one word `FILE where CONDITION`.
 ///
 /// # Errors
-/// If there is no layer just before it, or the text is no condition.
+/// If the word before it is not a layer, or the text is not a condition.
 pub(super) fn add(
     name: &str,
     condition: &str,

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::crs::{Crs, CrsKind};
+use crate::crs::{Crs, CrsKind, Unit};
 
 /// Returns the kind of a system as a word.
 pub(crate) fn kind_of(crs: &Crs) -> &'static str {
@@ -16,13 +16,14 @@ pub(crate) fn kind_of(crs: &Crs) -> &'static str {
 
 /// Returns a system as a JSON object.
 pub(crate) fn crs_json(crs: &Crs) -> Value {
+    let unit = |unit: &Unit| json!({ "name": unit.name, "factor": unit.factor });
     json!({
         "name": crs.name,
         "epsg": crs.epsg,
         "vertical_epsg": crs.vertical_epsg,
         "kind": kind_of(crs),
-        "unit": { "name": crs.unit.name, "factor": crs.unit.factor },
-        "vertical_unit": crs.vertical_unit.as_ref().map(|unit| json!({ "name": unit.name, "factor": unit.factor })),
+        "unit": unit(&crs.unit),
+        "vertical_unit": crs.vertical_unit.as_ref().map(unit),
         "wkt": crs.wkt,
     })
 }

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
+use super::product::in_lines;
 use crate::cli::Exit;
 use crate::cli::input::args::CrsArgs;
 use crate::cli::report::console::Console;
@@ -37,7 +38,7 @@ pub(crate) fn run(args: &CrsArgs, console: &Console) -> Result<Exit> {
             .for_each(|text| console.warning(escape::line(text)));
     }
     match args.json {
-        true => print(&escape::json(&format!("{:#}\n", found.to_json())))?,
+        true => print(&in_lines(&found.to_json()))?,
         false => print(&escape::lines(&found.to_text()))?,
     }
     Ok(Exit::Done)
@@ -46,7 +47,7 @@ pub(crate) fn run(args: &CrsArgs, console: &Console) -> Result<Exit> {
 /// Returns what is known of one system, or of two, as JSON.
 ///
 /// # Errors
-/// If a text is not a system, or there is no operation.
+/// If a text is not a coordinate system, or no operation leads from one to the other.
 pub(crate) fn as_json(
     from: &str,
     to: Option<&str>,
@@ -218,12 +219,22 @@ fn operations_json(found: &Operations) -> Value {
 }
 
 fn operation_json(one: &OperationFacts) -> Value {
-    let grids = one
-        .grids
-        .iter()
-        .map(|grid| json!({ "name": grid.name, "url": grid.url, "file": grid.file, "state": state_of(grid.state) }));
+    let grids = one.grids.iter().map(|grid| {
+        json!({
+            "name": grid.name,
+            "url": grid.url,
+            "file": grid.file,
+            "state": state_of(grid.state),
+        })
+    });
     let area = one.area.as_ref().map(|area| {
-        json!({ "name": area.name, "west": area.west, "south": area.south, "east": area.east, "north": area.north })
+        json!({
+            "name": area.name,
+            "west": area.west,
+            "south": area.south,
+            "east": area.east,
+            "north": area.north,
+        })
     });
     json!({
         "name": one.name,

@@ -3,9 +3,9 @@
 use clap::{Arg, ArgAction, Command, CommandFactory};
 use serde_json::{Map, Value, json};
 
+use super::product::in_lines;
 use crate::cli::Exit;
 use crate::cli::input::args::{Cli, DescribeArgs};
-use crate::cli::report::escape;
 use crate::cli::report::stdout::print;
 use crate::error::Result;
 
@@ -13,7 +13,7 @@ use crate::error::Result;
 pub(crate) fn run(args: &DescribeArgs) -> Result<Exit> {
     let described = describe();
     if args.json {
-        print(&escape::json(&format!("{described:#}\n")))?;
+        print(&in_lines(&described))?;
     } else {
         print(&as_text(&described))?;
     }

@@ -9,6 +9,7 @@ use crate::cli::report::console::Console;
 use crate::cli::report::summary::print_surface;
 use crate::error::{Error, Result};
 use crate::run::{self, Source, SurfaceProduct, SurfaceReport};
+use crate::terrain::Method;
 
 /// Returns the options of outputs for these files, of which there may be none.
 pub(super) fn output<'a>(
@@ -60,12 +61,24 @@ pub(super) fn read_one(
     memory: &MemoryArgs,
     console: &Console,
 ) -> Result<SurfaceProduct> {
+    match product.plan().surfaces.first() {
+        Some(plan) => open(plan, product.method(), memory, console),
+        None => Err(no_surface()),
+    }
+}
+
+/// Builds or reads a surface for heights by a method, and prints what it is.
+///
+/// # Errors
+/// Those of [`run::open_surface`].
+pub(super) fn open(
+    plan: &SurfacePlan,
+    method: Method,
+    memory: &MemoryArgs,
+    console: &Console,
+) -> Result<SurfaceProduct> {
     let context = console.context();
-    let Some(plan) = product.plan().surfaces.first() else {
-        return Err(no_surface());
-    };
-    let (request, method) = (&plan.request, product.method());
-    let mut surface = run::open_surface(request, method, memory.memory, &context)?;
+    let mut surface = run::open_surface(&plan.request, method, memory.memory, &context)?;
     print_surface(&SurfaceReport::take(&mut surface)?, console);
     Ok(surface)
 }

@@ -103,11 +103,10 @@ impl Parsed {
         let vocabulary = Vocabulary::new();
         let locations = Vocabulary::surface_locations(file);
         let words = vocabulary.surface_words(file)?;
-        let matches = vocabulary
+        let surface = vocabulary
             .surface_command()
             .try_get_matches_from(words)
-            .map_err(|e| file.located(refusal(&e, &locations), "[input]"))?;
-        let surface = SurfaceArgs::from_arg_matches(&matches)
+            .and_then(|matches| SurfaceArgs::from_arg_matches(&matches))
             .map_err(|e| file.located(refusal(&e, &locations), "[input]"))?;
         let parse = |mut product: ProductWords| {
             if options.overwrite && !product.words.iter().any(|word| word == "--overwrite") {
@@ -181,7 +180,7 @@ impl<'a> Planned<'a> {
         let resolved = SurfacePlan::resolve(&parsed.surface, console);
         let shared = match resolved {
             Ok(plan) => Some(plan),
-            // Verbs of two surfaces may have the options for the other one: they find out.
+            // The options may be for the other surface of a product: each resolves its own.
             Err(_) if parsed.surface.inputs.len() == 1 && parsed.any_has_two_surfaces() => None,
             Err(e) => return Err(file.of_surface(e, &Vocabulary::surface_locations(file))),
         };

@@ -1,18 +1,16 @@
 use serde_json::json;
 
 use super::pair;
+use super::product::in_lines;
 use crate::cli::Exit;
 use crate::cli::input::args::{TerrainFormatArg, TerrainTilesArgs, TilingArg};
 use crate::cli::input::plan::SurfacePlan;
 use crate::cli::report::console::Console;
-use crate::cli::report::escape;
 use crate::cli::report::stdout::print;
-use crate::cli::report::summary::{counted, print_surface};
+use crate::cli::report::summary::counted;
 use crate::data::Tiling;
 use crate::error::Result;
-use crate::run::{
-    self, Degrees, LevelReport, SurfaceReport, TerrainFolder, TerrainFormat, TerrainTilesOptions,
-};
+use crate::run::{self, Degrees, LevelReport, TerrainFolder, TerrainFormat, TerrainTilesOptions};
 use crate::terrain::{Method, PyramidRule};
 
 /// Writes a surface as levels of terrain tiles.
@@ -28,11 +26,8 @@ pub(crate) fn run(args: &TerrainTilesArgs, console: &Console) -> Result<Exit> {
     let mut plan = SurfacePlan::resolve(&args.surface, console)?;
     // Tiles are in degrees.
     plan.request.systems.degrees = Degrees::Allow;
-    let context = console.context();
-    let mut surface =
-        run::open_surface(&plan.request, Method::Linear, args.memory.memory, &context)?;
-    print_surface(&SurfaceReport::take(&mut surface)?, console);
-    let report = run::write_terrain_tiles(&surface, &options, folder, &context)?;
+    let surface = pair::open(&plan, Method::Linear, &args.memory, console)?;
+    let report = run::write_terrain_tiles(&surface, &options, folder, &console.context())?;
     for level in &report.levels {
         console.line(format_args!("{:11} {}", name_of(level), text(level)));
     }
@@ -40,7 +35,7 @@ pub(crate) fn run(args: &TerrainTilesArgs, console: &Console) -> Result<Exit> {
     if args.json {
         let levels: Vec<_> = report.levels.iter().map(as_json).collect();
         let all = json!({ "folder": args.output.display().to_string(), "levels": levels });
-        print(&escape::json(&format!("{all:#}\n")))?;
+        print(&in_lines(&all))?;
     }
     Ok(Exit::Done)
 }

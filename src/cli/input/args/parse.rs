@@ -216,7 +216,8 @@ pub(super) fn smoothing(text: &str) -> Result<f64, String> {
     let of_others = |cause: String| match finite(text) {
         Ok(_) => cause,
         Err(_) => format!(
-            "{cause}; without a tolerance, another option has to follow: `{text} --smooth -o ...`; with one: `--smooth 0.25 {text}`"
+            "{cause}; without a tolerance, another option has to follow: \
+             `{text} --smooth -o ...`; with one: `--smooth 0.25 {text}`"
         ),
     };
     positive(text).map_err(of_others)

@@ -120,7 +120,7 @@ impl RunFile {
         }
     }
 
-    /// Returns the file; `None` if the tables are those of a program.
+    /// Returns the name of the file; `None` if the tables are those of a program.
     pub(crate) fn name(&self) -> Option<&Path> {
         self.name.as_deref()
     }

@@ -1,8 +1,8 @@
 //! Run files: a surface and its products, in the words of the command line.
 //!
 //! A file has a table `input` with the options of a surface, and a list `product` of tables, each
-//! with a verb and its options. There is no other list of options than that of the command line:
-//! each product becomes the words of a single command, which the same parser reads.
+//! with a verb and its options. Options are not listed here again: each product becomes the words
+//! of a single command, which the parser of the command line reads.
 
 mod file;
 mod nearest;

@@ -7,8 +7,8 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use super::words::FILES;
 use crate::error::Error;
 
-/// Returns an error of the parser with the key that it is about, and the place of that key, which
-/// is among `places`.
+/// Returns an error of the parser with the key that it is about, and the place of that key, if
+/// it is among `locations`.
 pub(crate) fn refusal(refused: &clap::Error, locations: &[(String, String)]) -> Error {
     let named: Vec<String> = texts(refused, ContextKind::InvalidArg)
         .iter()

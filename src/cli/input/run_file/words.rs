@@ -79,7 +79,7 @@ impl Vocabulary {
     /// Returns the words of the options of the surface.
     ///
     /// # Errors
-    /// If a key is no option of a surface, or its value has a wrong form.
+    /// If a key is not an option of a surface, or its value has the wrong form.
     pub(crate) fn surface_words(&self, file: &RunFile) -> Result<Vec<OsString>> {
         let of_input = |entry: &Entry| self.of_input(entry, file);
         let words: Vec<Vec<OsString>> = file.input.iter().map(of_input).collect::<Result<_>>()?;
@@ -102,8 +102,8 @@ impl Vocabulary {
     /// Returns each product in the words of a single command.
     ///
     /// # Errors
-    /// If a verb is not known or makes no product, a key is no option of it, or a value has a wrong
-    /// form.
+    /// If a verb is unknown or does not make a product, a key is not one of its options, or a value
+    /// has the wrong form.
     pub(crate) fn products(&self, file: &RunFile) -> Result<Vec<ProductWords>> {
         let surface = self.surface_words(file)?;
         let product = |(i, product): (usize, &Product)| {
