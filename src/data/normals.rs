@@ -1,5 +1,6 @@
-/// Returns the normal of each of `count` vertices: those of its faces, by their areas. A face is
-/// given with its corners and their positions. A vertex without a face has the z axis.
+/// Returns the unit normal of each of `count` vertices: the mean of those of its faces, weighted by
+/// their areas. Each face is given by its corners and their positions; a vertex without a face has
+/// the z axis.
 ///
 /// # Complexity
 /// Linear.

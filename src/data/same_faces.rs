@@ -1,10 +1,10 @@
-//! What surfaces have in common that change something else of another one than its faces.
+//! The methods that are the same in all surfaces that have the faces of another one.
 
-/// Implements the methods of a [`Surface`](crate::data::Surface) that return the faces of another
-/// one, which is in a field.
+/// Implements the methods by which a [`Surface`](crate::data::Surface) has the faces of the one in
+/// a field.
 ///
-/// [`corners_in`](crate::data::Surface::corners_in) is among them: by it, a reader notices that a
-/// run is canceled.
+/// [`corners_in`](crate::data::Surface::corners_in) must be among them: its default would ask for
+/// single faces, and not notice that a run is canceled.
 macro_rules! same_faces {
     ($field:tt) => {
         fn vertex_count(&self) -> usize {

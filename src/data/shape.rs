@@ -172,7 +172,7 @@ impl Layer {
         chosen.copied().unwrap_or(at + 1)
     }
 
-    /// Removes the shapes for which there is no true value, with their values.
+    /// Keeps the shapes that are marked true in `held`, with their values; removes all others.
     pub(crate) fn keep(&mut self, held: &[bool]) {
         let chosen = (0..self.shapes.len()).filter(|&at| held.get(at) == Some(&true));
         self.chosen = Some(chosen.map(|at| self.record(at)).collect());
@@ -193,7 +193,7 @@ impl Layer {
     }
 }
 
-/// Removes the values for which there is no true value.
+/// Keeps the values that are marked true in `held`, and removes all others.
 fn retain<T>(values: &mut Vec<T>, held: &[bool]) {
     let mut held = held.iter();
     values.retain(|_| held.next() == Some(&true));
