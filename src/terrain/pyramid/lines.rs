@@ -2,7 +2,9 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::data::{TerrainTile, Tiling, orientation};
+use crate::data::{TerrainTile, Tiling};
+use crate::terrain::boxes::Extent;
+use crate::terrain::linear::{gradient, plan, turn};
 use crate::triangulation::num::Sign;
 
 /// A height at a position along a line.
@@ -47,22 +49,17 @@ impl TileLines {
 
     /// Adds a triangle of the surface. Where triangles meet, the first one counts.
     pub(super) fn add(&mut self, corners: [[f64; 3]; 3]) {
-        let range = |axis: usize| {
-            let of = corners.map(|p| p[axis]);
-            let low = of.into_iter().fold(f64::INFINITY, f64::min);
-            [low, of.into_iter().fold(f64::NEG_INFINITY, f64::max)]
-        };
-        let ranges = [range(0), range(1)];
+        let Extent { min, max } = Extent::of(corners);
         let rise = rise_of(corners);
-        let mut inside: [Vec<u32>; 2] = [Vec::new(), Vec::new()];
+        // The lines through the triangle: their numbers and coordinates.
+        let mut inside: [Vec<(u32, f64)>; 2] = [Vec::new(), Vec::new()];
         for axis in 0..2 {
-            let [low, high] = ranges[axis];
-            for number in self.numbers(axis, low, high) {
+            for number in self.numbers(axis, min[axis], max[axis]) {
                 let at = self.tiling.line(axis, self.level, number);
-                if at < low || at > high {
+                if at < min[axis] || at > max[axis] {
                     continue;
                 }
-                inside[axis].push(number);
+                inside[axis].push((number, at));
                 let line = self.lines.entry((axis, number)).or_default();
                 for i in 0..3 {
                     let ends = [corners[i], corners[(i + 1) % 3]];
@@ -72,13 +69,9 @@ impl TileLines {
                 }
             }
         }
-        for &column in &inside[0] {
-            for &row in &inside[1] {
-                let at = [
-                    self.tiling.line(0, self.level, column),
-                    self.tiling.line(1, self.level, row),
-                ];
-                if let Some(height) = height_in(corners, at) {
+        for &(column, x) in &inside[0] {
+            for &(row, y) in &inside[1] {
+                if let Some(height) = height_in(corners, [x, y]) {
                     let crossing = [height, rise[0], rise[1]];
                     self.crossings.entry([column, row]).or_insert(crossing);
                 }
@@ -124,13 +117,8 @@ impl TileLines {
 }
 
 /// How a triangle rises along x and along y; not at all if it has no area.
-fn rise_of([a, b, c]: [[f64; 3]; 3]) -> [f64; 2] {
-    let [u, v] = [b, c].map(|p| [0, 1, 2].map(|k| p[k] - a[k]));
-    let area = u[0] * v[1] - u[1] * v[0];
-    let rise = [
-        (u[2] * v[1] - v[2] * u[1]) / area,
-        (v[2] * u[0] - u[2] * v[0]) / area,
-    ];
+fn rise_of(corners: [[f64; 3]; 3]) -> [f64; 2] {
+    let rise = gradient(corners);
     if rise.iter().all(|rise| rise.is_finite()) {
         rise
     } else {
@@ -162,8 +150,8 @@ fn cross([p, q]: [[f64; 3]; 2], axis: usize, at: f64, add: &mut dyn FnMut(Height
 
 /// Returns the height of a triangle at a position, if it is there.
 fn height_in(corners: [[f64; 3]; 3], at: [f64; 2]) -> Option<f64> {
-    let [a, b, c] = corners;
-    let is_left = |p, q| orientation([p, q, [at[0], at[1], 0.0]]) != Sign::Negative;
+    let [a, b, c] = corners.map(plan);
+    let is_left = |p, q| turn(p, q, at) != Sign::Negative;
     (is_left(a, b) && is_left(b, c) && is_left(c, a)).then(|| height_on(corners, at))
 }
 
