@@ -8,7 +8,7 @@ use super::lines::{Crossing, TileLines};
 use super::rule::Level;
 use crate::data::{AT_ONCE, TerrainTile, TilePosition, Tiling};
 use crate::error::{Error, Result};
-use crate::terrain::sample::spread;
+use crate::terrain::sample::on_curve;
 
 /// The finest step of heights, in meters.
 const LEAST_STEP: f64 = 1.0 / 65_536.0;
@@ -164,5 +164,5 @@ pub(super) fn owner([x, y, _]: [f64; 3], tiling: Tiling, level: u8) -> TilePosit
 /// The position of a tile on a curve through all of its level: that of a tile of the next coarser
 /// level is a quarter of it.
 fn key(at: TilePosition) -> u64 {
-    spread(at.column) | spread(at.row) << 1
+    on_curve([at.column, at.row])
 }

@@ -15,18 +15,23 @@ pub(crate) fn along_curve(positions: &[[f64; 2]]) -> Vec<u32> {
         |k: usize| f64::from(u16::MAX) / (extent.max[k] - extent.min[k]).max(f64::MIN_POSITIVE);
     let (scales, low) = ([scale(0), scale(1)], extent.min);
     // What is not finite comes out as some number, and is found to be outside.
-    let step =
-        |q: &[f64; 2], k: usize| spread(u32::from(((q[k] - low[k]) * scales[k]) as u16)) as u32;
+    let step = |q: &[f64; 2], k: usize| u32::from(((q[k] - low[k]) * scales[k]) as u16);
     let mut keys: Vec<(u32, u32)> = (0..)
         .zip(positions)
-        .map(|(i, q)| (step(q, 0) | step(q, 1) << 1, i))
+        .map(|(i, q)| (on_curve([step(q, 0), step(q, 1)]) as u32, i))
         .collect();
     keys.par_sort_unstable();
     keys.into_iter().map(|(_, i)| i).collect()
 }
 
+/// Returns how far along a Z-curve a square of a lattice is, by its column and row. Four squares
+/// that are one in a lattice with half as many columns and rows follow each other.
+pub(crate) fn on_curve([column, row]: [u32; 2]) -> u64 {
+    spread(column) | spread(row) << 1
+}
+
 /// Moves each bit of a number to twice its position.
-pub(crate) fn spread(number: u32) -> u64 {
+fn spread(number: u32) -> u64 {
     let mut bits = u64::from(number);
     for (shift, mask) in [
         (16, 0x0000_FFFF_0000_FFFF),

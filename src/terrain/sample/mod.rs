@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 
 use rayon::prelude::*;
 
-pub(crate) use self::curve::{along_curve, spread};
+pub(crate) use self::curve::{along_curve, on_curve};
 use super::admitted::searched;
 use super::boxes::{Boxes, LocatedFace};
 use super::face_gradient;
