@@ -142,10 +142,8 @@ impl Heights {
         at: TilePosition,
         [i, j]: [u32; 2],
     ) -> ([u32; 2], Option<[f64; 3]>) {
-        // Lines of the grid are lines between the tiles of a finer level.
-        let finer = at.level + level.grid.trailing_zeros() as u8;
         let numbers = [at.column * level.grid + i, at.row * level.grid + j];
-        (numbers, self.lines.crossing(finer, numbers))
+        (numbers, self.lines.crossing(level.of_lines(), numbers))
     }
 }
 

@@ -105,8 +105,7 @@ impl Pyramid {
             .zip(0..)
             .map(|(tiles, level)| Level::new(rule, level, finest, tiles))
             .collect();
-        let last_line = |level: &Level| level.level + level.grid.trailing_zeros() as u8;
-        let finest_lines = levels.iter().map(last_line).max().unwrap_or(finest);
+        let finest_lines = levels.iter().map(Level::of_lines).max().unwrap_or(finest);
         let mut lines = TileLines::new(rule.tiling, finest_lines);
         for (number, face) in faces().enumerate() {
             if number % AT_ONCE == 0 && cancel.load(Ordering::Relaxed) {

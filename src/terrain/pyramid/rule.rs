@@ -143,6 +143,11 @@ impl Level {
         }
     }
 
+    /// The level whose lines between tiles are the lines of the grids of this one.
+    pub(super) fn of_lines(&self) -> u8 {
+        self.level + self.grid.trailing_zeros() as u8
+    }
+
     /// Returns how far from the triangles the surface is at most, by what was measured of tiles:
     /// the bound, unless it does not hold.
     pub fn within(&self, measured: &TileReport) -> f64 {

@@ -9,7 +9,7 @@ use super::lines::{Chain, Rises, chain, height_along, height_on, in_steps, rises
 use super::normals::normals;
 use super::report::TileReport;
 use super::rule::Level;
-use crate::data::{TerrainTile, TilePosition};
+use crate::data::{TerrainTile, TilePosition, Tiling};
 use crate::error::{Error, Result};
 use crate::terrain::admitted::searched;
 use crate::terrain::sample::along_curve;
@@ -122,6 +122,12 @@ fn halvings([lowest, highest]: [i32; 2]) -> u32 {
     (1..16).take_while(fits).last().unwrap_or(0)
 }
 
+/// Returns how many steps the lines of a grid are from the first side of a tile.
+fn grid_steps(tiling: Tiling, axis: usize, at: TilePosition, cells: u32) -> Vec<f64> {
+    let along = |number| tiling.along_side(axis, at, cells, number);
+    (0..=cells).map(|k| f64::from(STEPS) * along(k)).collect()
+}
+
 /// A position with its height in whole steps.
 fn rounded([u, v, z]: [f64; 3], step: f64) -> [f64; 3] {
     [u, v, (z / step).round() * step]
@@ -132,9 +138,13 @@ impl Frame {
     fn of(all: &Heights, level: &Level, at: TilePosition) -> Self {
         let cells = level.grid;
         let height = |i: u32, j: u32| (all.height(level, at, [i, j]) / level.step).round() as i32;
-        let steps = |axis: usize, i: u32| {
-            (f64::from(STEPS) * all.tiling.along_side(axis, at, cells, i)).round() as u16
-        };
+        let steps = [0, 1].map(|axis| {
+            let lines = grid_steps(all.tiling, axis, at, cells);
+            lines
+                .iter()
+                .map(|steps| steps.round() as u16)
+                .collect::<Vec<u16>>()
+        });
         let mut frame = Frame {
             vertices: Vec::new(),
             rises: Rises::default(),
@@ -153,8 +163,9 @@ impl Frame {
                         [along, across]
                     }
                 };
-                let fixed: Chain = (0..=cells)
-                    .map(|k| (steps(1 - axis, k), height(corner(k)[0], corner(k)[1])))
+                let along_side = || (0..).zip(&steps[1 - axis]);
+                let fixed: Chain = along_side()
+                    .map(|(k, &along)| (along, height(corner(k)[0], corner(k)[1])))
                     .collect();
                 let (crossings, ends) = all.along(at, axis, far);
                 let crossings = in_steps(crossings, ends);
@@ -168,14 +179,15 @@ impl Frame {
                     }
                 }
                 // Other borders meet there: what all of them know is the surface in this point.
-                for k in 0..=cells {
+                for (k, &along) in along_side() {
                     let rise = all.rise(level, at, corner(k));
-                    frame.rises.insert(position(steps(1 - axis, k)), rise);
+                    frame.rises.insert(position(along), rise);
                 }
             }
         }
         for i in 1..cells {
-            let column = (1..cells).map(|j| ([steps(0, i), steps(1, j)], height(i, j)));
+            let step = |j: u32| [steps[0][i as usize], steps[1][j as usize]];
+            let column = (1..cells).map(|j| (step(j), height(i, j)));
             frame.vertices.extend(column);
         }
         frame
@@ -241,9 +253,7 @@ impl Work<'_> {
     /// The heights of the tile where the surface has none.
     fn outside(&self, all: &Heights, finer: &Level, tile: &TerrainTile) -> Outside {
         let cells = 2 * finer.grid;
-        let lines = tile.at.level + cells.trailing_zeros() as u8;
-        let steps =
-            |axis: usize, k: u32| f64::from(STEPS) * all.tiling.along_side(axis, tile.at, cells, k);
+        let steps = [0, 1].map(|axis| grid_steps(all.tiling, axis, tile.at, cells));
         let side = |axis: usize, at: u16| -> Vec<[f64; 2]> {
             let on_side = tile.vertices.iter().filter(|v| v[axis] == at);
             let mut side: Vec<[f64; 2]> = on_side
@@ -258,7 +268,7 @@ impl Work<'_> {
         for i in 0..=cells {
             for j in 0..=cells {
                 let numbers = [tile.at.column * cells + i, tile.at.row * cells + j];
-                if all.lines.crossing(lines, numbers).is_some() {
+                if all.lines.crossing(finer.of_lines(), numbers).is_some() {
                     continue;
                 }
                 let on_side = [(0, i, j), (1, j, i)]
@@ -267,10 +277,11 @@ impl Work<'_> {
                 let height = match on_side {
                     // The same number in both tiles at the side.
                     Some((axis, k, along)) => {
-                        height_along(&sides[usize::from(k > 0)][axis], steps(1 - axis, along))
+                        let t = steps[1 - axis][along as usize];
+                        height_along(&sides[usize::from(k > 0)][axis], t)
                     }
                     None => {
-                        let q = [steps(0, i), steps(1, j)];
+                        let q = [steps[0][i as usize], steps[1][j as usize]];
                         let location = self.triangulation.locate(&[q[0], q[1], 0.0], near);
                         near = location.cell(&self.triangulation).or(near);
                         self.height_at(location, q).map_or(all.fill, |(z, _)| z)
