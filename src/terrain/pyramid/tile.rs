@@ -83,11 +83,9 @@ pub(super) fn tile(
         .collect();
     let positions: Vec<[f64; 3]> = sites.into_iter().map(|(p, _)| p).collect();
     let bound = (level.allowance - level.step / 2.0).max(level.allowance / 2.0);
-    let chosen = choose_around(positions.clone(), &stay, bound, cancel)?;
-    let vertices: Vec<[f64; 3]> = chosen
-        .iter()
-        .map(|&site| rounded(positions[site as usize], level.step))
-        .collect();
+    let chosen = choose_around(positions, &stay, bound, cancel)?;
+    let round = |p| rounded(p, level.step);
+    let vertices: Vec<[f64; 3]> = chosen.into_iter().map(round).collect();
     let (triangulation, _) = Delaunay::from_points(Terrain::default(), &vertices)
         .map_err(|e| Error::format(e.to_string()))?;
     let mut work = Work {

@@ -150,8 +150,8 @@ fn simplified(
 
 /// Chooses vertices among positions that are sorted by x, then y, each of which is there once:
 /// those that `stay`, the corners of the hull, and as few others as are found such that no height
-/// is further than the bound from the Delaunay triangulation of all that are chosen. Returns their
-/// numbers, in ascending order.
+/// is further than the bound from the Delaunay triangulation of all that are chosen. Returns these
+/// in their order.
 ///
 /// # Errors
 /// If there are too many positions, or the run is canceled.
@@ -160,11 +160,10 @@ pub(super) fn choose_around(
     stay: &[u32],
     bound: f64,
     cancel: &AtomicBool,
-) -> Result<Vec<u32>> {
-    let chosen = Sites::scattered(positions)
-        .map_err(Refused::from)
-        .and_then(|sites| choose_all(&sites, stay, bound, cancel));
-    chosen.map_err(not_chosen)
+) -> Result<Vec<[f64; 3]>> {
+    let sites = Sites::scattered(positions).map_err(|e| not_chosen(Refused::Input(e)))?;
+    let chosen = choose_all(&sites, stay, bound, cancel).map_err(not_chosen)?;
+    Ok(chosen.iter().map(|&site| sites.position(site)).collect())
 }
 
 impl SimplifyRule {
