@@ -8,6 +8,7 @@ use super::lines::{Crossing, TileLines};
 use super::rule::Level;
 use crate::data::{AT_ONCE, TerrainTile, TilePosition, Tiling};
 use crate::error::{Error, Result};
+use crate::terrain::in_order::by_coordinates;
 use crate::terrain::sample::on_curve;
 
 /// The finest step of heights, in meters.
@@ -49,10 +50,7 @@ impl Heights {
             .with_min_len(AT_ONCE)
             .map(|p| (key(owner(p, tiling, finest)), p))
             .collect();
-        keyed.par_sort_unstable_by(|(a, p), (b, q)| {
-            let axis = |k: usize| p[k].total_cmp(&q[k]);
-            a.cmp(b).then(axis(0)).then(axis(1)).then(axis(2))
-        });
+        keyed.par_sort_unstable_by(|(a, p), (b, q)| a.cmp(b).then_with(|| by_coordinates(p, q)));
         let (keys, points) = keyed.into_iter().unzip();
         Heights {
             tiling,

@@ -4,6 +4,7 @@ use rustc_hash::FxHashMap;
 
 use crate::data::{TerrainTile, Tiling};
 use crate::terrain::boxes::Extent;
+use crate::terrain::in_order::by_coordinates;
 use crate::terrain::linear::{gradient, plan, turn};
 use crate::triangulation::num::Sign;
 
@@ -82,10 +83,7 @@ impl TileLines {
     /// Sorts what was added. Where triangles meet at a line, the surface rises as in their mean.
     pub(super) fn finish(&mut self) {
         for line in self.lines.values_mut() {
-            line.sort_unstable_by(|a, b| {
-                let each = a.iter().zip(b).map(|(a, b)| a.total_cmp(b));
-                each.fold(std::cmp::Ordering::Equal, std::cmp::Ordering::then)
-            });
+            line.sort_unstable_by(by_coordinates);
             let same = |a: &Crossing, b: &Crossing| a[..2] == b[..2];
             let mean = |all: &[Crossing]| {
                 let [t, z, ..] = all[0];

@@ -8,6 +8,7 @@ use super::sites::{LatticeFrame, Sites};
 use crate::data::{AT_ONCE, EdgeKind, Face, Frame, Grid, Surface};
 use crate::error::{Error, Result};
 use crate::terrain::admitted::refused;
+use crate::terrain::in_order::by_coordinates;
 use crate::triangulation::geometry::{Geometry, Terrain};
 use crate::triangulation::kernel::RANGE;
 use crate::triangulation::num::unsigned_zero;
@@ -51,10 +52,7 @@ pub(super) fn of_triangles(surface: &dyn Surface) -> Result<Intake> {
     if let Some(Err(error)) = bad.map(|(p, _)| check(*p)).find_first(Result::is_err) {
         return Err(error);
     }
-    sites.par_sort_unstable_by(|(p, _), (q, _)| {
-        let axis = |axis: usize| p[axis].total_cmp(&q[axis]);
-        axis(0).then(axis(1)).then(axis(2))
-    });
+    sites.par_sort_unstable_by(|(p, _), (q, _)| by_coordinates(p, q));
     let mut site_of = vec![u32::MAX; used.len()];
     let mut positions: Vec<[f64; 3]> = Vec::with_capacity(sites.len());
     for ([x, y, z], vertex) in sites {

@@ -1,6 +1,5 @@
 //! One point of each square cell in plan.
 
-use std::cmp::Ordering;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
@@ -9,6 +8,7 @@ use super::position::{cell_of, point};
 use super::rule::CellPoint;
 use crate::data::PointBatch;
 use crate::error::Result;
+use crate::terrain::in_order::by_coordinates;
 
 /// The best point of each cell so far.
 #[derive(Debug)]
@@ -84,6 +84,5 @@ fn key(point: [f64; 3], cell: [i64; 2], size: f64, keep: CellPoint) -> [f64; 4] 
 /// Returns true if a key is before another one: by the first numbers that differ, in their total
 /// order, in which NaN has a place, too.
 fn is_less(a: &[f64; 4], b: &[f64; 4]) -> bool {
-    let mut orders = a.iter().zip(b).map(|(a, b)| a.total_cmp(b));
-    orders.find(|order| order.is_ne()) == Some(Ordering::Less)
+    by_coordinates(a, b).is_lt()
 }

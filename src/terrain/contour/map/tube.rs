@@ -1,6 +1,5 @@
 //! Heights smoothed inside a tube around those of the surface.
 
-use std::cmp::Ordering;
 use std::sync::{Mutex, PoisonError};
 
 use rayon::prelude::*;
@@ -9,6 +8,7 @@ use super::fit::Fit;
 use super::work::GoOn;
 use crate::data::{Surface, corners};
 use crate::error::Result;
+use crate::terrain::in_order::by_coordinates;
 
 /// How often all heights are smoothed.
 pub(super) const PASSES: usize = 4;
@@ -75,11 +75,6 @@ pub(super) fn smoothed(surface: &dyn Surface, tube: Tube, go_on: GoOn) -> Result
     Ok((0..).zip(&ranks).map(height).collect())
 }
 
-fn by_position(a: &[f64; 3], b: &[f64; 3]) -> Ordering {
-    let by_axis = (0..3).map(|axis| a[axis].total_cmp(&b[axis]));
-    by_axis.fold(Ordering::Equal, Ordering::then)
-}
-
 /// The vertices that have faces, in the order of their coordinates, and the edges between them.
 struct Vertices {
     positions: Vec<[f64; 3]>,
@@ -100,12 +95,12 @@ impl Vertices {
         }
         let used = (0..surface.vertex_count() as u32).filter(|&v| ranks[v as usize] == 0);
         let mut sorted: Vec<([f64; 3], u32)> = used.map(|v| (surface.position(v), v)).collect();
-        sorted.par_sort_unstable_by(|(a, v), (b, w)| by_position(a, b).then(v.cmp(w)));
+        sorted.par_sort_unstable_by(|(a, v), (b, w)| by_coordinates(a, b).then(v.cmp(w)));
         let mut positions: Vec<[f64; 3]> = Vec::with_capacity(sorted.len());
         for (position, vertex) in sorted {
             if positions
                 .last()
-                .is_none_or(|last| by_position(last, &position).is_ne())
+                .is_none_or(|last| by_coordinates(last, &position).is_ne())
             {
                 positions.push(position);
             }
