@@ -6,13 +6,13 @@ use crate::error::{Error, Result};
 /// The semi-major axis of WGS 84, in meters.
 const RADIUS: f64 = SEMI_AXES[0];
 
-/// How many samples a tile of heights has along a side by the convention for geometric errors.
+/// The number of heights along a side of a tile that CesiumJS assumes for geometric errors.
 const SAMPLES: f64 = 65.0;
 
 /// The division of the earth into squares, four times as many with each level.
 ///
-/// Coordinates are degrees of longitude and latitude, whatever it is: viewers take a position
-/// within a tile as linear in both, also where tiles are squares of Web Mercator.
+/// Coordinates are degrees of longitude and latitude, also where tiles are squares of Web Mercator:
+/// viewers take a position within a tile as linear in both.
 ///
 /// Tiles are counted from the west and from the south, as in the Tile Map Service.
 #[derive(
@@ -76,8 +76,8 @@ impl Tiling {
         whole / f64::from(rows(level))
     }
 
-    /// Returns the longitude (axis 0) or the latitude (axis 1) of a line between tiles, the first
-    /// of which is 0: the same number at each level that has the line.
+    /// Returns the longitude (axis 0) or the latitude (axis 1) of a line between tiles, in degrees:
+    /// the same to the last bit at each level that has the line. Line 0 is the first one.
     pub fn line(self, axis: usize, level: u8, number: u32) -> f64 {
         let along = f64::from(number) / f64::from(rows(level));
         match (self, axis) {
@@ -87,7 +87,8 @@ impl Tiling {
         }
     }
 
-    /// Returns a longitude or a latitude in sides of a tile from the first line.
+    /// Returns how far a longitude or a latitude in degrees is from the first line, in sides of a
+    /// tile.
     pub fn in_sides(self, axis: usize, level: u8, value: f64) -> f64 {
         let along = match (self, axis) {
             (Tiling::Geographic, _) => (value - [-180.0, -90.0][axis]) / 180.0,
@@ -110,7 +111,7 @@ impl Tiling {
         (self.line(axis, finer, at.row * cells + number) - south) / (north - south)
     }
 
-    /// Returns the smallest longitude and latitude of a tile, and its largest.
+    /// Returns the smallest longitude and latitude of a tile, and its largest, in degrees.
     pub fn bounds(self, at: TilePosition) -> [[f64; 2]; 2] {
         let corner = |more: u32| {
             [
@@ -122,7 +123,8 @@ impl Tiling {
     }
 
     /// Returns the error that viewers expect of a level, in meters: a quarter of the distance of 65
-    /// heights along a side at the equator.
+    /// heights along a side at the equator, as in CesiumJS (`TerrainProvider`,
+    /// `getEstimatedLevelZeroGeometricErrorForAHeightmap`).
     pub fn geometric_error(self, level: u8) -> f64 {
         self.angle(level) * RADIUS / SAMPLES / 4.0
     }

@@ -48,7 +48,8 @@ impl TileLines {
         first..=number(high).ceil().clamp(0.0, last) as u32
     }
 
-    /// Adds a triangle of the surface. Where triangles meet, the first one counts.
+    /// Adds a triangle of the surface. Where lines cross on the border of several triangles, the
+    /// first one counts.
     pub(super) fn add(&mut self, corners: [[f64; 3]; 3]) {
         let Extent { min, max } = Extent::of(corners);
         let rise = rise_of(corners);
@@ -124,8 +125,8 @@ fn rise_of(corners: [[f64; 3]; 3]) -> [f64; 2] {
     }
 }
 
-/// Passes on the position and the height at which an edge crosses a line; both ends of an edge on
-/// it.
+/// Passes on the position and the height at which an edge crosses a line, or those of both ends if
+/// the edge is on the line.
 fn cross([p, q]: [[f64; 3]; 2], axis: usize, at: f64, add: &mut dyn FnMut(Height)) {
     // The same numbers from both sides of the edge.
     let [p, q] = if p[axis] <= q[axis] { [p, q] } else { [q, p] };
@@ -175,7 +176,7 @@ pub(super) type Chain = Vec<(u16, i32)>;
 /// that both tiles at a border have the same vertices.
 ///
 /// # Complexity
-/// Quadratic in the vertices at worst, else linear for each halving.
+/// Expected O(n log n) in the heights, quadratic at worst.
 pub(super) fn chain(heights: &[Height], fixed: &[(u16, i32)], step: f64, bound: f64) -> Chain {
     let mut chain = fixed.to_vec();
     for ends in fixed.windows(2) {

@@ -48,8 +48,8 @@ pub(super) fn to_earth(
     Ok(())
 }
 
-/// The tiles of each level up to the finest one that may have a part of the surface, and all of the
-/// coarsest level.
+/// Returns, for each level up to the finest one, the tiles that may have a part of the surface; at
+/// the coarsest level, all tiles.
 pub(super) fn tiles_of(
     faces: impl Iterator<Item = [[f64; 3]; 3]>,
     tiling: Tiling,

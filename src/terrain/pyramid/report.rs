@@ -3,13 +3,13 @@
 /// How near a tile is to the surface.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct TileReport {
-    /// The vertices.
+    /// The number of vertices.
     pub vertices: usize,
-    /// The triangles.
+    /// The number of triangles.
     pub triangles: usize,
-    /// The heights of the surface that it was measured against.
+    /// The number of heights of the surface that it was measured against.
     pub heights: usize,
-    /// The largest distance of a height, in meters.
+    /// The largest vertical distance of such a height from the triangles, in meters.
     pub largest: f64,
     /// The number of heights that are further off than the bound, because steps are too large.
     pub beyond: usize,

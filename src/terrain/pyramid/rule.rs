@@ -39,8 +39,8 @@ pub struct Level {
     pub level: u8,
     /// No height of the surface should be further from the triangles than this, in meters.
     pub bound: f64,
-    /// What of the bound is left for heights: the rest, at most half of it, is what the earth is
-    /// curved within a triangle.
+    /// The part of the bound that is left for heights, in meters. The rest, at most half, is for
+    /// the curve of the earth within a triangle.
     pub allowance: f64,
     /// By how much the earth is above a triangle, at most, in meters. It may be more than the
     /// bound: a tile of the coarsest levels has only so many squares.

@@ -76,9 +76,9 @@ impl Volume {
         }
     }
 
-    /// Returns the volumes with a cut or a fill of 0 where it is no more than the rounding errors
-    /// of the heights of the base over the area: the corners of a base that is taken from the
-    /// surface are rounded, and on a plane nothing is cut.
+    /// Returns the volumes, but with a cut or a fill of 0 if it is no larger than what rounding the
+    /// heights of the base can cause. The corners of a base that is taken from the surface are
+    /// rounded: without this, a plane would have a cut.
     ///
     /// # Complexity
     /// Linear in the faces of the base.

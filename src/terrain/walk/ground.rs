@@ -16,7 +16,8 @@ pub(super) struct Ground<'a> {
 }
 
 impl<'a> Ground<'a> {
-    /// Prepares a surface that is also seen under a watch, which counts the faces.
+    /// Prepares a surface. `watched` is the same surface, read once to index it: by it, a caller
+    /// can count the faces that are read.
     pub(super) fn new(surface: &'a dyn Surface, watched: &dyn Surface) -> Self {
         let (hints, rim) = Hints::new(watched);
         Ground {

@@ -120,7 +120,8 @@ pub fn map_contours(
     map_contours_while(surface, levels, rules, &|_| Ok(()))
 }
 
-/// Returns the work that [`map_contours_while`] counts at most.
+/// Returns the most work that [`map_contours_while`] counts, in vertices, each of which counts up
+/// to six times; 0 if lines are not moved.
 pub fn map_work(surface: &dyn Surface, rules: &MapRules) -> u64 {
     let times = match (rules.smooth, rules.simplify) {
         (Some(_), _) => tube::PASSES as u64 + 2,
@@ -130,11 +131,12 @@ pub fn map_work(surface: &dyn Surface, rules: &MapRules) -> u64 {
     times * surface.vertex_count() as u64
 }
 
-/// Returns what [`map_contours`] does, and can be stopped.
+/// Like [`map_contours`], but work is counted and can be stopped by `go_on`. It is called while
+/// heights are smoothed and lines are worked on, but not while the surface is indexed, traced or
+/// divided into regions.
 ///
 /// # Errors
-/// Those of [`map_contours`], and the one of `go_on`. That is called while heights are smoothed and
-/// lines are worked on, but not while the surface is indexed, traced or divided into regions.
+/// Those of [`map_contours`], and that of `go_on`.
 ///
 /// # Complexity
 /// That of [`map_contours`].

@@ -42,11 +42,10 @@ pub(super) struct Tube {
 
 /// Returns smoothed heights for all vertices of a surface; held vertices keep theirs.
 ///
-/// Vertices at one position are one, as those are that the parts of a surface share. Each height
-/// becomes that of a quadric at the vertex, fitted to the vertices within the radius
+/// Each height becomes that of a quadric at the vertex, fitted to the vertices within the radius
 /// that edges lead to, but not through held vertices; then it is cut to the tube. All are smoothed
-/// at once, four times. Sums are made in the order of coordinates, so that they depend on the
-/// surface alone.
+/// at once, four times. Vertices at one position count as one: parts of a surface share them. Sums
+/// are made in the order of coordinates, so that they depend on the surface alone.
 ///
 /// # Errors
 /// That of `go_on`, which counts each vertex once in each pass.
