@@ -62,7 +62,7 @@ use super::contours;
 use super::index::LevelIndex;
 use super::line::start_at_smallest;
 use crate::data::{ContourLine, Surface, bounds_of_faces, doubled_area};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::terrain::in_order::in_order;
 use crate::terrain::walk::{At, Locator};
 use crate::terrain::{Levels, vertices_along};
@@ -254,11 +254,11 @@ pub fn map_contours_while(
     })
 }
 
-/// Returns exact contours of a surface, which are drawn already, as those of a map that
-/// [keeps](MapRules::keeps_exact) them: sorted as [`contours`] sorts them.
+/// Returns exact contours of a surface as those of a map, in their order. The lines are all that
+/// [`contours`] finds at the levels, and the rules [keep](MapRules::keeps_exact) them.
 ///
 /// # Errors
-/// Those of [`contour_bands`], if bands are asked for.
+/// If the rules do not keep contours exact; and those of [`contour_bands`], if bands are asked for.
 ///
 /// # Complexity
 /// Linear, besides that of [`contour_bands`].
@@ -268,6 +268,12 @@ pub fn map_of_contours(
     levels: &Levels,
     rules: &MapRules,
 ) -> Result<MapContours> {
+    if !rules.keeps_exact() {
+        return Err(Error::usage(
+            "contours that are traced already cannot be smoothed, simplified or left out",
+        )
+        .cure("pass rules that keep contours exact"));
+    }
     let finish = |line: ContourLine| finished(&Traced::of(&line), levels, line.points);
     let lines: Vec<MapLine> = lines.into_iter().map(finish).collect();
     let bands = match rules.with_bands {
