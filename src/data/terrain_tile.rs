@@ -81,7 +81,8 @@ impl Tiling {
     pub fn line(self, axis: usize, level: u8, number: u32) -> f64 {
         let along = f64::from(number) / f64::from(rows(level));
         match (self, axis) {
-            (Tiling::Geographic, _) => along * 180.0 + [-180.0, -90.0][axis],
+            (Tiling::Geographic, 0) => along * 180.0 - 180.0,
+            (Tiling::Geographic, _) => along * 180.0 - 90.0,
             (Tiling::WebMercator, 0) => along * 360.0 - 180.0,
             (Tiling::WebMercator, _) => (PI * (2.0 * along - 1.0)).sinh().atan().to_degrees(),
         }
@@ -91,7 +92,8 @@ impl Tiling {
     /// tile.
     pub fn in_sides(self, axis: usize, level: u8, value: f64) -> f64 {
         let along = match (self, axis) {
-            (Tiling::Geographic, _) => (value - [-180.0, -90.0][axis]) / 180.0,
+            (Tiling::Geographic, 0) => (value + 180.0) / 180.0,
+            (Tiling::Geographic, _) => (value + 90.0) / 180.0,
             (Tiling::WebMercator, 0) => (value + 180.0) / 360.0,
             (Tiling::WebMercator, _) => (value.to_radians().tan().asinh() / PI + 1.0) / 2.0,
         };
@@ -106,17 +108,18 @@ impl Tiling {
         if (self, axis) != (Tiling::WebMercator, 1) {
             return f64::from(number) / f64::from(cells);
         }
-        let finer = at.level + cells.trailing_zeros() as u8;
+        let finer = at.level.saturating_add(cells.trailing_zeros() as u8);
+        let line = at.row.saturating_mul(cells).saturating_add(number);
         let [[_, south], [_, north]] = self.bounds(at);
-        (self.line(axis, finer, at.row * cells + number) - south) / (north - south)
+        (self.line(axis, finer, line) - south) / (north - south)
     }
 
     /// Returns the smallest longitude and latitude of a tile, and its largest, in degrees.
     pub fn bounds(self, at: TilePosition) -> [[f64; 2]; 2] {
         let corner = |more: u32| {
             [
-                self.line(0, at.level, at.column + more),
-                self.line(1, at.level, at.row + more),
+                self.line(0, at.level, at.column.saturating_add(more)),
+                self.line(1, at.level, at.row.saturating_add(more)),
             ]
         };
         [corner(0), corner(1)]
