@@ -516,13 +516,13 @@ fn no_line_stays_bare_where_there_is_room() {
         several += usize::from(count > 1);
     }
     assert!(several > 2, "{several}");
-    let of = |k: usize, other: &ContourLabel| {
-        let label: &ContourLabel = &labels[k];
-        (label.at[0] - other.at[0]).hypot(label.at[1] - other.at[1])
-    };
     for (k, label) in labels.iter().enumerate() {
-        let near = labels[..k].iter().map(|other| of(k, other));
-        let nearest = near.fold(f64::INFINITY, f64::min);
+        let distance =
+            |other: &ContourLabel| (label.at[0] - other.at[0]).hypot(label.at[1] - other.at[1]);
+        let nearest = labels[..k]
+            .iter()
+            .map(distance)
+            .fold(f64::INFINITY, f64::min);
         assert!(nearest >= 1.5 * label.size[0], "{nearest}");
     }
 }

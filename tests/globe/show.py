@@ -21,7 +21,7 @@ HERE = pathlib.Path(__file__).parent
 
 
 def view_of(tiles):
-    """Return west, south, east and north in degrees, and a height to look at."""
+    """Return west, south, east and north in degrees with a height to look at, and the format of the tiles."""
     layer = tiles / "layer.json"
     if layer.exists():
         return [*json.loads(layer.read_text())["bounds"], 0.0], "terrain"
@@ -66,7 +66,7 @@ def main():
             body = file.read_bytes()
             self.send_response(200)
             types = {".html": "text/html", ".js": "text/javascript", ".json": "application/json", ".css": "text/css"}
-            self.send_header("Content-Type", types.get(file.suffix, "text/html" if path == "/page" else "application/octet-stream"))
+            self.send_header("Content-Type", types.get(file.suffix, "application/octet-stream"))
             if folder == options.tiles:
                 result["served"] += 1
                 if body[:2] == b"\x1f\x8b":
