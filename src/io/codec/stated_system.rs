@@ -3,8 +3,8 @@
 use crate::crs::Crs;
 use crate::data::Layer;
 
-/// Returns the number of a system at EPSG, if the number says all of it. That of a system with heights
-/// is one of the plan: the heights are in the text alone.
+/// Returns the number of a system at EPSG, if the number says all of it. That of a system with
+/// heights is one of the plan: the heights are in the text alone.
 pub(crate) fn code_of(crs: &Crs) -> Option<i32> {
     let code = crs.epsg.filter(|_| crs.vertical_unit.is_none())?;
     i32::try_from(code).ok()
