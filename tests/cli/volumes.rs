@@ -252,7 +252,7 @@ fn ground_swells_when_it_is_dug_out_and_shrinks_as_fill() {
     run_in(&folder, &[&["volume", "-o", "t.csv"], &both[..]].concat()).works(&[]);
     let table = String::from_utf8(bytes(&folder, "t.csv")).unwrap();
     assert!(
-        table.starts_with("record,level,cut,fill,net,cut_area,fill_area,level_area,common_area,surface_only,base_only,slope_area,loose_cut,bank_fill,balance,unit\n"),
+        table.starts_with("record,level,cut,fill,net,cut_area,fill_area,level_area,common_area,surface_only,base_only,slope_area,loose_cut,bank_fill,balance,unit,area_unit\n"),
         "{table}"
     );
     for factor in ["0", "-1", "nan", "inf", "0.25", "25"] {

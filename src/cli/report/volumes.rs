@@ -190,12 +190,12 @@ pub(crate) fn json(product: &VolumeProduct) -> Value {
 
 /// Returns exact numbers as CSV.
 pub(crate) fn csv(product: &VolumeProduct) -> String {
-    let unit = product.unit.map_or("", |unit| unit.symbols()[0]);
+    let units = product.unit.map_or(["", ""], |unit| unit.symbols());
     let fields = fields(&product.rows);
     let names: Vec<String> = fields.iter().map(|field| field.key()).collect();
     let has_names = product.rows.iter().any(|row| row.name.is_some());
     let name = if has_names { "name," } else { "" };
-    let mut text = format!("record,{name}level,{},unit\n", names.join(","));
+    let mut text = format!("record,{name}level,{},unit,area_unit\n", names.join(","));
     for row in &product.rows {
         let record = row
             .record
@@ -210,7 +210,7 @@ pub(crate) fn csv(product: &VolumeProduct) -> String {
             .chain(name)
             .chain([level.unwrap_or_default()])
             .chain(values)
-            .chain([unit.to_owned()])
+            .chain(units.map(str::to_owned))
             .collect();
         text += &cells.join(",");
         text.push('\n');

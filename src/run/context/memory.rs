@@ -23,6 +23,9 @@ const BYTES_A_POINT_OF_SPACE: u64 = 730;
 /// table of edges that finds the links.
 const BYTES_A_JOINED_TRIANGLE: u64 = 90;
 
+/// Bytes per vertex while heights are smoothed for a map.
+const BYTES_A_SMOOTHED_VERTEX: u64 = 100;
+
 /// Bytes per byte of a mesh file while it is read, including the triangles.
 const BYTES_A_MESH_BYTE: u64 = 3;
 
@@ -155,6 +158,25 @@ pub(crate) fn require_for_parts(triangles: usize) -> Result<()> {
         e.cure(
             "rasters with linear heights, contours, heights at positions and along lines, and volumes need no mesh",
         )
+    })
+}
+
+/// Returns an error if there is not enough memory to smooth the heights of this many vertices, which
+/// stay in their files.
+///
+/// # Errors
+/// Those of [`require_for_points`].
+pub(crate) fn require_for_smoothing(vertices: usize) -> Result<()> {
+    require(
+        (vertices as u64).saturating_mul(BYTES_A_SMOOTHED_VERTEX),
+        &format!("contours for a map, of {vertices} vertices,"),
+    )
+    .map_err(|e| {
+        e.cure(wording![
+            "draw the map in parts (",
+            Setting::Bounds,
+            "), or exact contours, which need less"
+        ])
     })
 }
 

@@ -8,6 +8,7 @@ use crate::data::{Attributes, Layer, Shape, Value};
 use crate::error::{Error, Result};
 use crate::io::Destination;
 use crate::io::contours::{self, ContourSummary, MapSheet};
+use crate::run::context::memory;
 use crate::run::context::notice::Notice;
 use crate::run::context::units::Units;
 use crate::run::context::watched::Watched;
@@ -55,7 +56,8 @@ pub struct MapSummary {
 ///
 /// # Errors
 /// If a level or a rule is not valid, the coordinates are in degrees or in another unit than the
-/// heights while a rule has lengths, the surface is damaged, or the run is canceled.
+/// heights while a rule has lengths, there is not enough memory, the surface is damaged, or the run is
+/// canceled.
 ///
 /// # Complexity
 /// That of [`terrain::map_contours`]. A surface in parts stays in its files; the lines, and about
@@ -101,6 +103,9 @@ pub fn contour_map(
         _ => None,
     };
     let contours = surface.with_linked_faces(context, |faces| {
+        if !rules.keeps_exact() {
+            memory::require_for_smoothing(faces.vertex_count())?;
+        }
         let size = match terrain::map_work(faces, &rules) {
             0 => Size::Uncounted,
             work => Size::Items(work),
