@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use breakline::data::Tiling;
+use breakline::run::proj::TransformOptions;
 use breakline::run::{self, TerrainFolder, TerrainFormat, TerrainTilesOptions};
 use breakline::terrain::PyramidRule;
 use pyo3::prelude::*;
@@ -27,6 +28,8 @@ pub(crate) struct TerrainArguments {
     fill: Option<f64>,
     vertical_offset: Option<f64>,
     no_gzip: bool,
+    require_grids: bool,
+    epoch: Option<f64>,
 }
 
 /// Writes a surface as levels of terrain tiles.
@@ -62,6 +65,10 @@ pub(crate) fn terrain_tiles(
         },
         vertical_offset: given.vertical_offset,
         plain: given.no_gzip,
+        transform: TransformOptions {
+            require_grids: given.require_grids,
+            epoch: given.epoch,
+        },
         name: None,
     };
     let surface = surface.product();

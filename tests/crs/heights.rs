@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::process::Command;
 
+use breakline::io::quantized_mesh::decode;
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -177,6 +178,70 @@ fn a_missing_grid_is_named_and_heights_stay_or_it_is_an_error() {
     ] {
         assert!(refused.stderr.contains(part), "{part}: {}", refused.stderr);
     }
+}
+
+/// Returns the lowest and the highest height of a tile of the finest level.
+fn range_of_tile(tiles: &Path) -> [f64; 2] {
+    let folder = |at: &Path| {
+        std::fs::read_dir(at)
+            .unwrap()
+            .next()
+            .unwrap()
+            .unwrap()
+            .path()
+    };
+    let bytes = std::fs::read(folder(&folder(&tiles.join("12")))).unwrap();
+    let tile = decode(&bytes).unwrap();
+    let heights = (0..tile.vertices.len() as u32).map(|v| tile.height(v));
+    heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], z| {
+        [low.min(z), high.max(z)]
+    })
+}
+
+#[test]
+fn terrain_tiles_have_heights_above_the_ellipsoid_by_a_grid() {
+    let (folder, grids) = folders();
+    let level = "15 47 300\n15.001 47 300\n15.001 47.001 300\n15 47.001 300\n";
+    std::fs::write(folder.path().join("level.xyz"), level).unwrap();
+    let tiles = folder.path().join("tiles");
+    let make = |options: &[&str]| {
+        let words = "terrain-tiles level.xyz --max-edge none --force-degrees --max-level 12 \
+            --max-error 0.1 --no-gzip --overwrite -o tiles";
+        let args: Vec<&str> = words
+            .split_whitespace()
+            .chain(options.iter().copied())
+            .collect();
+        run(folder.path(), grids.path(), &args)
+    };
+    let expect = |ran: &Ran, height: f64, has_warning: bool| {
+        assert_eq!(ran.code, Some(0), "{}", ran.stderr);
+        assert_eq!(
+            ran.stderr.contains("warning"),
+            has_warning,
+            "{}",
+            ran.stderr
+        );
+        let [low, high] = range_of_tile(&tiles);
+        assert!(low > height - 0.11 && high < height + 0.11, "{low} {high}");
+    };
+    let system = &["--a-srs", "EPSG:4326+5773"];
+    let missing = make(system);
+    expect(&missing, 300.0, true);
+    assert!(missing.stderr.contains("us_nga_egm"), "{}", missing.stderr);
+    let refused = make(&[&system[..], REQUIRED].concat());
+    assert_eq!(refused.code, Some(1), "{}", refused.stderr);
+    write_geoid(grids.path());
+    let raised = 300.0 + geoid(15.0, 47.0);
+    expect(&make(system), raised, false);
+    expect(&make(&[&system[..], REQUIRED].concat()), raised, false);
+    // An offset is taken instead.
+    expect(
+        &make(&[&system[..], &["--vertical-offset", "7"]].concat()),
+        307.0,
+        false,
+    );
+    expect(&make(&["--a-srs", "EPSG:4979"]), 300.0, false);
+    expect(&make(&["--a-srs", "EPSG:4326"]), 300.0, true);
 }
 
 #[test]

@@ -56,6 +56,8 @@ def terrain_tiles(
     fill: Optional[float] = None,
     vertical_offset: Optional[float] = None,
     no_gzip: bool = False,
+    require_grids: bool = False,
+    epoch: Optional[float] = None,
     memory: Any = None,
     threads: Optional[int] = None,
     progress: Progress = None,
@@ -84,9 +86,12 @@ def terrain_tiles(
     fill : float, optional
         The height around the surface, above the ellipsoid. By default the lowest of the surface.
     vertical_offset : float, optional
-        The height of the geoid above the ellipsoid in meters, which is added to heights.
+        The height of the geoid above the ellipsoid in meters, which is added to heights. By default a build with PROJ
+        transforms heights, if the coordinate system states their datum and the grid is installed.
     no_gzip : bool
         Do not compress quantized meshes. 3D Tiles are never compressed.
+    require_grids, epoch
+        As for :func:`crs`, for the transform to longitudes, latitudes and heights above the ellipsoid.
     memory : int or str, optional
         As for :func:`sample`.
     threads, progress
@@ -111,6 +116,9 @@ def terrain_tiles(
     (13, 1, True)
     """
     refuse_kept(surface)
+    transform = {"require_grids": bool(require_grids), "epoch": _inputs.optional_number(epoch, "epoch")}
+    if "to_crs" in surface:
+        surface |= transform
     found = surface_of(points, surface, threads, progress, build=asked(memory))
     given = {
         "format": format,
@@ -120,6 +128,7 @@ def terrain_tiles(
         "vertical_offset": _inputs.optional_number(vertical_offset, "vertical_offset"),
         "max_level": _level(max_level),
         "no_gzip": bool(no_gzip),
+        **transform,
     }
     with call(threads, progress) as request:
         levels = _breakline.terrain_tiles(found, given, (os.fspath(output), bool(overwrite)), request)

@@ -57,6 +57,7 @@ fn options(args: &TerrainTilesArgs) -> TerrainTilesOptions {
         },
         vertical_offset: args.vertical_offset,
         plain: args.no_gzip,
+        transform: (&args.surface.systems.transform).into(),
         name: None,
     }
 }

@@ -16,6 +16,7 @@ mod followed;
 pub(crate) mod frame;
 pub(crate) mod lattice;
 pub(crate) mod map_options;
+mod on_earth;
 pub(crate) mod overlaps;
 pub(crate) mod points;
 pub(crate) mod profile;

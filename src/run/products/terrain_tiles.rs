@@ -8,17 +8,16 @@ use std::sync::{Mutex, PoisonError};
 use flate2::Compression;
 use flate2::write::GzEncoder;
 
+use super::on_earth::Placing;
 use super::surface::SurfaceProduct;
-use crate::crs::{Crs, Heights, Transform};
 use crate::data::{TerrainTile, TilePosition, Tiling};
 use crate::error::{Error, Result, Setting, wording};
 use crate::io::quantized_mesh::{LayerOptions, encode, layer_json};
 use crate::io::tiles_3d::{self, TilesetRoot};
 use crate::io::{FolderKind, OutputFolder};
 use crate::run::context::notice::Notice;
-use crate::run::context::units::Units;
 use crate::run::context::{Context, Journal, Size, Stage};
-use crate::run::sources::proj::{self, TransformOptions};
+use crate::run::sources::proj::TransformOptions;
 use crate::terrain::{Level, Pyramid, PyramidRule, TileReport, is_height};
 
 /// The file by which a viewer finds quantized meshes, and that by which it finds 3D Tiles.
@@ -101,11 +100,14 @@ pub struct TerrainTilesOptions {
     /// The levels, their bounds, and the division into tiles.
     pub rule: PyramidRule,
     /// What is added to heights to get heights above the ellipsoid, in meters: the height of the
-    /// geoid, if heights are above it. `None` adds nothing, and a notice says so unless the
-    /// coordinate system has heights above the ellipsoid.
+    /// geoid, if heights are above it. With `None`, PROJ transforms heights by its grids if the
+    /// coordinate system says what they are counted from and the grids are installed; otherwise
+    /// nothing is added, and a notice says so.
     pub vertical_offset: Option<f64>,
     /// Quantized meshes are not compressed. 3D Tiles never are.
     pub plain: bool,
+    /// How positions and heights are transformed to those of the earth.
+    pub transform: TransformOptions,
     /// The name of the terrain; by default that of the folder.
     pub name: Option<String>,
 }
@@ -422,78 +424,6 @@ fn tiles_of(pyramid: &Pyramid) -> Vec<&[TilePosition]> {
 /// Returns the numbers of a tile as paths have them.
 fn numbers(TilePosition { level, column, row }: TilePosition) -> String {
     format!("{level}/{column}/{row}")
-}
-
-/// How positions of a surface become those of tiles.
-struct Placing {
-    /// `None` if they are in the system of the tiles.
-    transform: Option<Box<dyn Transform>>,
-    /// Meters in a unit of height.
-    factor: f64,
-    /// What is added to heights, in meters.
-    offset: f64,
-}
-
-impl Placing {
-    fn new(crs: Option<&Crs>, options: &TerrainTilesOptions, journal: &Journal) -> Result<Self> {
-        let Some(crs) = crs else {
-            return Err(Error::usage(
-                "the coordinate system of the surface is not known, so its position on the earth \
-                 is unknown",
-            )
-            .cure(wording!["state it with ", Setting::Crs.text("EPSG:CODE")]));
-        };
-        if options.vertical_offset.is_none() {
-            let heights = crs.heights();
-            if heights != Heights::Ellipsoid {
-                journal.add(Notice::HeightsAboveEllipsoid(heights));
-            }
-        }
-        // Heights get their unit and offset here, so PROJ transforms the plan alone.
-        let plan = Crs {
-            vertical_epsg: None,
-            vertical_unit: None,
-            ..crs.clone()
-        };
-        let system = Crs::from_epsg(Tiling::COORDINATES)?;
-        let transform = match plan.is_same(&system) {
-            true => None,
-            false => {
-                journal.add(Notice::Reprojecting(
-                    Box::new(plan.clone()),
-                    Box::new(system.clone()),
-                ));
-                Some(proj::transform(
-                    &plan,
-                    &system,
-                    &TransformOptions::default(),
-                )?)
-            }
-        };
-        Ok(Placing {
-            transform,
-            factor: 1.0 / Units::of(Some(crs)).height_of_metres(1.0),
-            offset: options.vertical_offset.unwrap_or(0.0),
-        })
-    }
-
-    fn apply(&self, points: &mut [[f64; 3]]) -> Result<()> {
-        if let Some(transform) = &self.transform {
-            transform.transform(points)?;
-        }
-        for [_, _, z] in points {
-            *z = *z * self.factor + self.offset;
-        }
-        Ok(())
-    }
-
-    fn warn(&self, journal: &Journal) {
-        let warnings = self
-            .transform
-            .iter()
-            .flat_map(|transform| transform.warnings());
-        warnings.for_each(|text| journal.add(Notice::Transform(text)));
-    }
 }
 
 #[cfg(test)]

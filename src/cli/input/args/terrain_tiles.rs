@@ -99,7 +99,8 @@ pub(crate) struct TerrainTilesArgs {
     ///
     /// Viewers need heights above the ellipsoid of WGS 84. Most surveys have heights above the
     /// geoid or another level of the sea, which is up to 105 m below and 85 m above it. Pass 0 if
-    /// the heights are above the ellipsoid.
+    /// the heights are above the ellipsoid. Without this option, a build with PROJ transforms
+    /// heights, if the coordinate system states their datum and the grid is installed.
     #[arg(
         long,
         value_name = "METERS",
