@@ -53,6 +53,7 @@ mod surface;
 mod surface_facts;
 mod terrain_tile;
 mod triangles;
+mod water_mask;
 mod without_lines;
 
 pub(crate) use attributes::ValueKind;
@@ -87,4 +88,5 @@ pub(crate) use surface::{across, bounds_of_faces, corners, faces, faces_under, m
 pub use surface_facts::SurfaceFacts;
 pub use terrain_tile::{TerrainTile, TilePosition, Tiling};
 pub use triangles::{LinkFlaw, Triangles};
+pub use water_mask::WaterMask;
 pub use without_lines::WithoutLines;

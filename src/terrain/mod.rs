@@ -96,6 +96,7 @@ mod tin;
 mod tin_report;
 mod volume;
 mod walk;
+mod water;
 mod window;
 
 pub use builder::TinBuilder;
@@ -144,4 +145,5 @@ pub use tin_report::TinReport;
 pub use volume::{Volume, VolumeBase, Zones, volumes};
 pub use walk::Locator;
 pub(crate) use walk::stepped;
+pub use water::{Water, water_triangles};
 pub use window::ReadWindow;

@@ -3,6 +3,7 @@
 use std::io::Read;
 use std::path::Path;
 
+use breakline::data::{TilePosition, Tiling, WaterMask};
 use breakline::io::quantized_mesh::{DecodedTile, decode};
 use serde_json::Value;
 
@@ -96,6 +97,9 @@ fn the_tiles_that_are_listed_are_there() {
     for name in listed.iter().filter(|name| name.ends_with(".terrain")) {
         let tile = tile(&tiles.join(name));
         assert!(tile.triangles.len() >= 2, "{name}");
+        assert_eq!(tile.water, None, "{name}");
+        let level: u8 = name.split('/').next().unwrap().parse().unwrap();
+        assert_eq!(tile.metadata.is_some(), level % 10 == 0, "{name}");
         assert!(
             tile.borders.iter().all(|border| border.len() >= 2),
             "{name}"
@@ -252,4 +256,94 @@ fn the_bytes_do_not_depend_on_the_order_of_points_or_on_threads() {
         written.push((names, bytes));
     }
     assert!(written[0] == written[1]);
+}
+
+/// A lake with an island, and a river beside it, on the ridge.
+const WATER: [(&str, &str); 2] = [
+    (
+        "lake.geojson",
+        r#"{"type":"Polygon","coordinates":[
+            [[7.002,46.002,405],[7.007,46.002,405],[7.007,46.006,405],[7.002,46.006,405],[7.002,46.002,405]],
+            [[7.0037,46.0032,405],[7.0037,46.0047,405],[7.0052,46.0047,405],[7.0052,46.0032,405],[7.0037,46.0032,405]]]}"#,
+    ),
+    (
+        "river.geojson",
+        r#"{"type":"MultiLineString","coordinates":[
+            [[7.0021,46.0071,430],[7.0091,46.0072,420]],[[7.0021,46.0081,430],[7.0091,46.0082,420]]]}"#,
+    ),
+];
+
+/// Returns true if the water of [`WATER`] is at a position.
+fn is_water([x, y]: [f64; 2]) -> bool {
+    let is_in = |x0: f64, y0: f64, x1: f64, y1: f64| (x0..x1).contains(&x) && (y0..y1).contains(&y);
+    let lake = is_in(7.002, 46.002, 7.007, 46.006) && !is_in(7.0037, 46.0032, 7.0052, 46.0047);
+    let bank = 46.0071 + (x - 7.0021) / 0.007 * 0.0001;
+    lake || (is_in(7.0021, 46.0, 7.0091, 47.0) && (bank..bank + 0.001).contains(&y))
+}
+
+#[test]
+fn tiles_say_where_water_is() {
+    let lines: Vec<(&str, &str)> = WATER.to_vec();
+    let ridge = ridge();
+    let folder = folder_with(&[&lines[..], &[("ridge.xyz", &ridge[..])]].concat());
+    let water = [
+        "--flat",
+        "lake.geojson",
+        "--rivers",
+        "river.geojson",
+        "--max-level",
+        "16",
+        "--vertical-offset",
+        "0",
+        "--tiling",
+    ];
+    for (name, tiling) in [
+        ("geographic", Tiling::Geographic),
+        ("mercator", Tiling::WebMercator),
+    ] {
+        run_in(
+            &folder,
+            &[RIDGE, &["--overwrite"], &water, &[name]].concat(),
+        )
+        .works(&[]);
+        let tiles = folder.path().join("tiles");
+        let layer = std::fs::read_to_string(tiles.join("layer.json")).unwrap();
+        assert!(layer.contains("watermask"), "{layer}");
+        let mut cells_of_water = 0;
+        for path in files(&tiles)
+            .iter()
+            .filter(|path| path.ends_with(".terrain"))
+        {
+            let numbers: Vec<u32> = path
+                .trim_end_matches(".terrain")
+                .split('/')
+                .map(|number| number.parse().unwrap())
+                .collect();
+            let at = TilePosition {
+                level: numbers[0] as u8,
+                column: numbers[1],
+                row: numbers[2],
+            };
+            let [[west, south], [east, north]] = tiling.bounds(at);
+            let side = WaterMask::SIDE;
+            let mask = tile(&tiles.join(path)).water.unwrap();
+            for cell in 0..side * side {
+                let along = |n: usize| (n as f64 + 0.5) / side as f64;
+                let x = west + (east - west) * along(cell % side);
+                let y = north - (north - south) * along(cell / side);
+                let found = match &mask {
+                    WaterMask::Land => false,
+                    WaterMask::Water => true,
+                    WaterMask::Cells(cells) => cells[cell],
+                };
+                cells_of_water += usize::from(found);
+                // Whatever the rounding of the lines between.
+                let around = [-1e-9, 1e-9].map(|by| is_water([x + by, y + by]));
+                if around[0] == around[1] {
+                    assert_eq!(found, around[0], "{path} {x} {y}");
+                }
+            }
+        }
+        assert!(cells_of_water > 10_000, "{cells_of_water}");
+    }
 }

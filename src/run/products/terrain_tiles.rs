@@ -10,15 +10,15 @@ use flate2::write::GzEncoder;
 
 use super::on_earth::Placing;
 use super::surface::SurfaceProduct;
-use crate::data::{TerrainTile, TilePosition, Tiling};
+use crate::data::{Surface, TerrainTile, TilePosition, Tiling};
 use crate::error::{Error, Result, Setting, wording};
-use crate::io::quantized_mesh::{LayerOptions, encode, layer_json};
+use crate::io::quantized_mesh::{Extensions, LayerOptions, encode, layer_json, tiles_below};
 use crate::io::tiles_3d::{self, TilesetRoot};
 use crate::io::{FolderKind, OutputFolder};
 use crate::run::context::notice::Notice;
 use crate::run::context::{Context, Journal, Size, Stage};
 use crate::run::sources::proj::TransformOptions;
-use crate::terrain::{Level, Pyramid, PyramidRule, TileReport, is_height};
+use crate::terrain::{Level, Pyramid, PyramidRule, TileReport, Water, is_height, water_triangles};
 
 /// The file by which a viewer finds quantized meshes, and that by which it finds 3D Tiles.
 const LAYER: &str = "layer.json";
@@ -186,7 +186,7 @@ pub fn write_terrain_tiles(
     let journal = Journal::new(context);
     options.check()?;
     let folder = folder.0;
-    let mut pyramid = surface.with_faces(context, |faces| {
+    let (mut pyramid, water) = surface.with_faces(context, |faces| {
         let placing = Placing::new(faces.crs(), options, &journal)?;
         let pyramid = Pyramid::new(
             faces,
@@ -194,11 +194,15 @@ pub fn write_terrain_tiles(
             &options.rule,
             context.cancel,
         )?;
+        let water = match options.format {
+            TerrainFormat::QuantizedMesh => water_of(faces, &placing, context)?,
+            TerrainFormat::Tiles3d => Water::new([]),
+        };
         faces.ensure_intact()?;
         placing.warn(&journal);
-        Ok(pyramid)
+        Ok((pyramid, water))
     })?;
-    let mut layout = Layout::new(options, &pyramid, folder.target())?;
+    let mut layout = Layout::new(options, &pyramid, water, folder.target())?;
     let (levels, deepest) = write_levels(&mut pyramid, &layout, options, &folder, &journal)?;
     layout.measured(&pyramid, &levels, deepest);
     for (path, bytes) in layout.index(&pyramid)? {
@@ -209,6 +213,18 @@ pub fn write_terrain_tiles(
         levels,
         notices: journal.take(),
     })
+}
+
+/// Returns the water of a surface, in degrees.
+fn water_of(surface: &dyn Surface, placing: &Placing, context: &Context) -> Result<Water> {
+    let mut triangles = water_triangles(surface, &|| context.check())?;
+    for triangle in &mut triangles {
+        placing.apply(triangle)?;
+    }
+    let in_plan = triangles
+        .iter()
+        .map(|corners| corners.map(|[x, y, _]| [x, y]));
+    Ok(Water::new(in_plan))
 }
 
 /// Writes all tiles, and returns what was measured, and the depth of the deepest skirt.
@@ -291,12 +307,25 @@ fn compressed(bytes: &[u8]) -> Result<Vec<u8>> {
 
 /// The files of a format: where tiles are, and by which files viewers find them.
 enum Layout {
-    QuantizedMesh { tiling: Tiling, name: String },
-    Tiles3d { roots: Vec<TilesetRoot> },
+    QuantizedMesh {
+        tiling: Tiling,
+        name: String,
+        /// The tiles of each level, the coarsest first.
+        tiles: Vec<Vec<TilePosition>>,
+        water: Water,
+    },
+    Tiles3d {
+        roots: Vec<TilesetRoot>,
+    },
 }
 
 impl Layout {
-    fn new(options: &TerrainTilesOptions, pyramid: &Pyramid, target: &Path) -> Result<Self> {
+    fn new(
+        options: &TerrainTilesOptions,
+        pyramid: &Pyramid,
+        water: Water,
+        target: &Path,
+    ) -> Result<Self> {
         let tiling = pyramid.tiling();
         match options.format {
             TerrainFormat::QuantizedMesh => {
@@ -304,7 +333,12 @@ impl Layout {
                 let name = options.name.clone().unwrap_or_else(|| {
                     of_folder.map_or_else(|| "terrain".to_owned(), |name| name.into_owned())
                 });
-                Ok(Layout::QuantizedMesh { tiling, name })
+                Ok(Layout::QuantizedMesh {
+                    tiling,
+                    name,
+                    tiles: tiles_of(pyramid).into_iter().map(<[_]>::to_vec).collect(),
+                    water,
+                })
             }
             TerrainFormat::Tiles3d => {
                 let of_level = |at: TilePosition| TilesetRoot {
@@ -338,7 +372,21 @@ impl Layout {
     /// Returns the file of a tile, with a skirt of this depth in meters if viewers hang none.
     fn bytes(&self, tile: &TerrainTile, depth: f64) -> Result<Vec<u8>> {
         match self {
-            Layout::QuantizedMesh { tiling, .. } => encode(tile, *tiling),
+            Layout::QuantizedMesh {
+                tiling,
+                tiles,
+                water,
+                ..
+            } => {
+                let mask = (!water.is_empty()).then(|| water.mask(tiling.bounds(tile.at)));
+                let slices: Vec<&[TilePosition]> = tiles.iter().map(Vec::as_slice).collect();
+                let below = tiles_below(tile.at, &slices);
+                let extensions = Extensions {
+                    water: mask.as_ref(),
+                    metadata: below.as_deref(),
+                };
+                encode(tile, *tiling, &extensions)
+            }
             Layout::Tiles3d { .. } => tiles_3d::content(tile, Tiling::Geographic, depth),
         }
     }
@@ -368,11 +416,18 @@ impl Layout {
     fn index(&self, pyramid: &Pyramid) -> Result<Vec<(PathBuf, Vec<u8>)>> {
         let all = tiles_of(pyramid);
         match self {
-            Layout::QuantizedMesh { tiling, name } => {
+            Layout::QuantizedMesh {
+                tiling,
+                name,
+                water,
+                ..
+            } => {
+                let mut extensions = vec!["octvertexnormals", "metadata"];
+                extensions.extend((!water.is_empty()).then_some("watermask"));
                 let layer = LayerOptions {
                     name: name.clone(),
                     bounds: pyramid.bounds(),
-                    extensions: vec!["octvertexnormals"],
+                    extensions,
                 };
                 let text = layer_json(*tiling, &all, &layer);
                 Ok(vec![(PathBuf::from(LAYER), text.into_bytes())])

@@ -11,7 +11,8 @@ pub struct LayerOptions {
     pub name: String,
     /// The smallest longitude and latitude of the surface, and the largest, in degrees.
     pub bounds: [[f64; 2]; 2],
-    /// The names of the extensions that tiles have.
+    /// The names of the extensions that tiles have. With "metadata", tiles [list](tiles_below)
+    /// those below them.
     pub extensions: Vec<&'static str>,
 }
 
@@ -38,8 +39,35 @@ pub fn layer_json(tiling: Tiling, levels: &[&[TilePosition]], options: &LayerOpt
         && !options.extensions.is_empty()
     {
         layer.insert("extensions".to_owned(), json!(options.extensions));
+        if options.extensions.contains(&"metadata") {
+            layer.insert("metadataAvailability".to_owned(), json!(LISTED));
+        }
     }
     format!("{layer:#}\n")
+}
+
+/// So many levels of tiles are listed in one above them.
+const LISTED: u8 = 10;
+
+/// Returns the text by which a tile lists the tiles below it, for the next ten levels; `None` for a
+/// tile that has no list, because one above it has these tiles. `levels` are those of
+/// [`layer_json`].
+pub fn tiles_below(at: TilePosition, levels: &[&[TilePosition]]) -> Option<String> {
+    if !at.level.is_multiple_of(LISTED) {
+        return None;
+    }
+    let below = |deeper: u8| {
+        let tiles = levels.get(usize::from(at.level + deeper))?;
+        let [columns, rows] = [at.column, at.row].map(|n| n << deeper..(n + 1) << deeper);
+        let [first, end] = [columns.start, columns.end]
+            .map(|column| tiles.partition_point(|tile| tile.column < column));
+        let inside = tiles[first..end]
+            .iter()
+            .filter(|tile| rows.contains(&tile.row));
+        Some(ranges(&inside.copied().collect::<Vec<_>>()))
+    };
+    let available: Vec<Vec<Value>> = (1..=LISTED).map_while(below).collect();
+    Some(json!({ "available": available }).to_string())
 }
 
 /// A rectangle of tiles: its first and its last column and row.

@@ -10,7 +10,8 @@
 //! |---|---|---|
 //! | vertices, triangles, borders | yes | yes |
 //! | normals of vertices (extension 1) | yes | as bytes |
-//! | water (extension 2), metadata (extension 4) | no | skipped |
+//! | water (extension 2) | yes | yes |
+//! | tiles that exist below this one (extension 4) | yes | as text |
 //!
 //! See <https://github.com/CesiumGS/quantized-mesh>.
 
@@ -21,9 +22,9 @@ mod read;
 mod tests;
 mod write;
 
-pub use layer::{LayerOptions, layer_json};
+pub use layer::{LayerOptions, layer_json, tiles_below};
 pub use read::{DecodedTile, decode};
-pub use write::encode;
+pub use write::{Extensions, encode};
 
 /// The bytes of the header.
 const HEADER: usize = 88;
@@ -31,5 +32,7 @@ const HEADER: usize = 88;
 /// Up to so many vertices, their numbers are written in 16 bits.
 const SHORT: usize = 65_536;
 
-/// The number of the extension with normals.
+/// The numbers of the extensions with normals, with water, and with what is known of a tile.
 const NORMALS: u8 = 1;
+const WATER: u8 = 2;
+const METADATA: u8 = 4;

@@ -1,7 +1,7 @@
 //! Reading a tile.
 
-use super::{HEADER, NORMALS, SHORT};
-use crate::data::TerrainTile;
+use super::{HEADER, METADATA, NORMALS, SHORT, WATER};
+use crate::data::{TerrainTile, WaterMask};
 use crate::error::{Error, Result};
 
 /// What is in a file of a tile.
@@ -17,6 +17,10 @@ pub struct DecodedTile {
     pub borders: [Vec<u32>; 4],
     /// The normal of each vertex in two bytes, by an octahedron, if there are any.
     pub normals: Vec<[u8; 2]>,
+    /// Where the tile has water, if it says so.
+    pub water: Option<WaterMask>,
+    /// What is known of the tile, such as which tiles exist below it, as JSON.
+    pub metadata: Option<String>,
     /// The numbers of the extensions.
     pub extensions: Vec<u8>,
 }
@@ -156,6 +160,8 @@ pub fn decode(bytes: &[u8]) -> Result<DecodedTile> {
     }
     let mut extensions = Vec::new();
     let mut normals = Vec::new();
+    let mut water = None;
+    let mut metadata = None;
     while !rest.bytes.is_empty() {
         let number = rest.take(1, "an extension")?;
         extensions.extend(number);
@@ -171,6 +177,10 @@ pub fn decode(bytes: &[u8]) -> Result<DecodedTile> {
                 .chunks_exact(2)
                 .map(|pair| [pair[0], pair[1]])
                 .collect();
+        } else if number == [WATER] {
+            water = Some(mask(content)?);
+        } else if number == [METADATA] {
+            metadata = Some(text(content)?);
         }
     }
     Ok(DecodedTile {
@@ -179,8 +189,36 @@ pub fn decode(bytes: &[u8]) -> Result<DecodedTile> {
         triangles,
         borders,
         normals,
+        water,
+        metadata,
         extensions,
     })
+}
+
+fn mask(content: &[u8]) -> Result<WaterMask> {
+    const CELLS: usize = WaterMask::SIDE * WaterMask::SIDE;
+    match *content {
+        [0] => Ok(WaterMask::Land),
+        [_] => Ok(WaterMask::Water),
+        // Shades between land and water are allowed.
+        ref cells if cells.len() == CELLS => Ok(WaterMask::of_cells(
+            cells.iter().map(|&byte| byte > 127).collect(),
+        )),
+        ref cells => Err(Error::format(format!(
+            "the water of a tile is 1 byte or {CELLS}, and here {}",
+            cells.len()
+        ))),
+    }
+}
+
+fn text(content: &[u8]) -> Result<String> {
+    let mut rest = Rest {
+        bytes: content,
+        all: content.len(),
+    };
+    let length = rest.count("the length of the metadata")?;
+    let text = rest.take(length, "the metadata")?;
+    String::from_utf8(text.to_vec()).map_err(|_| Error::format("the metadata are not UTF-8"))
 }
 
 #[cold]

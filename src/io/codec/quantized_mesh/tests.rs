@@ -1,7 +1,13 @@
-use super::{SHORT, decode, encode};
+use super::{Extensions, SHORT, decode, tiles_below};
 use crate::crs::{SEMI_AXES, geocentric};
-use crate::data::{TerrainTile, TilePosition, Tiling};
+use crate::data::{TerrainTile, TilePosition, Tiling, WaterMask};
+use crate::error::Result;
 use testkit::random::Random;
+
+/// The bytes of a tile without further extensions.
+fn encode(tile: &TerrainTile, tiling: Tiling) -> Result<Vec<u8>> {
+    super::encode(tile, tiling, &Extensions::default())
+}
 
 /// Two triangles over a tile.
 fn square(level: u8) -> TerrainTile {
@@ -198,4 +204,79 @@ fn normals_come_back_up_to_a_step_of_their_bytes() {
         refused.contains("998 bytes of normals for 500 vertices"),
         "{refused}"
     );
+}
+
+#[test]
+fn water_and_metadata_come_back() {
+    let mut random = Random(12);
+    let side = WaterMask::SIDE;
+    let cells: Vec<bool> = (0..side * side).map(|_| random.below(2) == 0).collect();
+    let mut tile = square(5);
+    tile.normals = vec![[0.0, 0.0, 1.0]; 4];
+    for water in [
+        WaterMask::Land,
+        WaterMask::Water,
+        WaterMask::of_cells(cells),
+    ] {
+        let extensions = Extensions {
+            water: Some(&water),
+            metadata: Some(r#"{"available":[]}"#),
+        };
+        let bytes = super::encode(&tile, Tiling::Geographic, &extensions).unwrap();
+        let read = decode(&bytes).unwrap();
+        assert_eq!(read.extensions, [1, 2, 4]);
+        assert_eq!(read.water.as_ref(), extensions.water);
+        assert_eq!(read.metadata.as_deref(), extensions.metadata);
+        for length in encode(&tile, Tiling::Geographic).unwrap().len() + 1..bytes.len() {
+            let is_between = decode(&bytes[..length]).is_ok_and(|read| read.metadata.is_none());
+            assert!(is_between || decode(&bytes[..length]).is_err(), "{length}");
+        }
+    }
+    assert_eq!(WaterMask::of_cells(vec![false; 4]), WaterMask::Land);
+    assert_eq!(WaterMask::of_cells(vec![true; 4]), WaterMask::Water);
+}
+
+#[test]
+fn a_tile_lists_those_below_it() {
+    let mut random = Random(40);
+    let tile = |level, column, row| TilePosition { level, column, row };
+    let levels: Vec<Vec<TilePosition>> = (0..13_u8)
+        .map(|level| {
+            let mut tiles: Vec<TilePosition> = (0..60)
+                .map(|_| [2_u64, 1].map(|sides| random.below(sides << level) as u32))
+                .map(|[column, row]| tile(level, column, row))
+                .collect();
+            tiles.sort_unstable();
+            tiles.dedup();
+            tiles
+        })
+        .collect();
+    let slices: Vec<&[TilePosition]> = levels.iter().map(Vec::as_slice).collect();
+    assert_eq!(tiles_below(tile(1, 0, 0), &slices), None);
+    for (at, last) in [(tile(0, 1, 0), 10), (tile(10, 9, 3), 12)] {
+        let text = tiles_below(at, &slices).unwrap();
+        let read: serde_json::Value = serde_json::from_str(&text).unwrap();
+        let listed = read["available"].as_array().unwrap();
+        assert_eq!(listed.len(), usize::from(last - at.level));
+        for (level, ranges) in (at.level + 1..).zip(listed) {
+            let mut found = Vec::new();
+            for range in ranges.as_array().unwrap() {
+                let number = |name: &str| range[name].as_u64().unwrap() as u32;
+                for column in number("startX")..=number("endX") {
+                    let rows = number("startY")..=number("endY");
+                    found.extend(rows.map(|row| tile(level, column, row)));
+                }
+            }
+            found.sort_unstable();
+            let up = level - at.level;
+            let is_below =
+                |one: &&TilePosition| [one.column >> up, one.row >> up] == [at.column, at.row];
+            let expected: Vec<TilePosition> = levels[usize::from(level)]
+                .iter()
+                .filter(is_below)
+                .copied()
+                .collect();
+            assert_eq!(found, expected, "{at:?} {level}");
+        }
+    }
 }

@@ -1,9 +1,18 @@
 //! Writing a tile.
 
 use super::header::Header;
-use super::{NORMALS, SHORT};
-use crate::data::{TerrainTile, Tiling};
+use super::{METADATA, NORMALS, SHORT, WATER};
+use crate::data::{TerrainTile, Tiling, WaterMask};
 use crate::error::Result;
+
+/// What a tile says besides its triangles and their normals.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Extensions<'a> {
+    /// Where it has water.
+    pub water: Option<&'a WaterMask>,
+    /// Which tiles exist below it: see [`tiles_below`](super::tiles_below).
+    pub metadata: Option<&'a str>,
+}
 
 /// Returns the bytes of a tile, which are not compressed.
 ///
@@ -13,7 +22,7 @@ use crate::error::Result;
 ///
 /// # Errors
 /// If a triangle names a vertex that does not exist.
-pub fn encode(tile: &TerrainTile, tiling: Tiling) -> Result<Vec<u8>> {
+pub fn encode(tile: &TerrainTile, tiling: Tiling, extensions: &Extensions) -> Result<Vec<u8>> {
     tile.check()?;
     let (order, triangles) = by_first_use(tile);
     let vertices: Vec<[u16; 3]> = order.iter().map(|&v| tile.vertices[v as usize]).collect();
@@ -53,11 +62,30 @@ pub fn encode(tile: &TerrainTile, tiling: Tiling) -> Result<Vec<u8>> {
     }
     if tile.normals.len() == tile.vertices.len() {
         let normals = order.iter().map(|&v| octahedral(tile.normals[v as usize]));
-        bytes.push(NORMALS);
-        bytes.extend((2 * count).to_le_bytes());
-        bytes.extend(normals.flatten());
+        let normals: Vec<u8> = normals.flatten().collect();
+        extension(NORMALS, &normals, &mut bytes);
+    }
+    if let Some(water) = extensions.water {
+        let byte = |&is_water: &bool| if is_water { u8::MAX } else { 0 };
+        let mask = match water {
+            WaterMask::Land => vec![byte(&false)],
+            WaterMask::Water => vec![byte(&true)],
+            WaterMask::Cells(cells) => cells.iter().map(byte).collect(),
+        };
+        extension(WATER, &mask, &mut bytes);
+    }
+    if let Some(text) = extensions.metadata {
+        let mut content = (text.len() as u32).to_le_bytes().to_vec();
+        content.extend(text.as_bytes());
+        extension(METADATA, &content, &mut bytes);
     }
     Ok(bytes)
+}
+
+fn extension(number: u8, content: &[u8], bytes: &mut Vec<u8>) {
+    bytes.push(number);
+    bytes.extend((content.len() as u32).to_le_bytes());
+    bytes.extend(content);
 }
 
 /// A direction in two bytes: projected to an octahedron, whose lower half is folded outwards
