@@ -114,7 +114,8 @@ impl Shores {
                 }
             }
         }
-        if !is_level && !(is_of_shores && has_bank) {
+        let is_water = is_level || (is_of_shores && has_bank);
+        if !is_water {
             water.truncate(before);
         }
     }

@@ -161,8 +161,8 @@ pub(crate) fn require_for_parts(triangles: usize) -> Result<()> {
     })
 }
 
-/// Returns an error if there is not enough memory to smooth the heights of this many vertices, which
-/// stay in their files.
+/// Returns an error if there is not enough memory to smooth the heights of this many vertices,
+/// which stay in their files.
 ///
 /// # Errors
 /// Those of [`require_for_points`].

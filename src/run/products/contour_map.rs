@@ -56,8 +56,8 @@ pub struct MapSummary {
 ///
 /// # Errors
 /// If a level or a rule is not valid, the coordinates are in degrees or in another unit than the
-/// heights while a rule has lengths, there is not enough memory, the surface is damaged, or the run is
-/// canceled.
+/// heights while a rule has lengths, there is not enough memory, the surface is damaged, or the run
+/// is canceled.
 ///
 /// # Complexity
 /// That of [`terrain::map_contours`]. A surface in parts stays in its files; the lines, and about

@@ -1,6 +1,5 @@
 //! Positions of a surface on the earth: degrees, and heights above the ellipsoid.
 
-use super::terrain_tiles::TerrainTilesOptions;
 use crate::crs::{Crs, Heights, Transform};
 use crate::data::Tiling;
 use crate::error::{Error, Result, Setting, wording};
@@ -23,14 +22,16 @@ pub(super) struct Placing {
 }
 
 impl Placing {
-    /// Chooses a transform of plan and heights if there is one, else of the plan alone; then a
-    /// notice says what heights are used.
+    /// Chooses a transform of plan and heights, unless an offset in meters is added to heights or
+    /// the system does not say what they are counted from. Then the plan alone is transformed, and
+    /// without an offset a notice says what heights are used.
     ///
     /// # Errors
     /// If the system is not known, or cannot be transformed.
     pub(super) fn new(
         crs: Option<&Crs>,
-        options: &TerrainTilesOptions,
+        vertical_offset: Option<f64>,
+        options: &TransformOptions,
         journal: &Journal,
     ) -> Result<Self> {
         let Some(crs) = crs else {
@@ -42,14 +43,14 @@ impl Placing {
         };
         let heights = crs.heights();
         let states_datum = !matches!(heights, Heights::None | Heights::Unknown);
-        if states_datum && options.vertical_offset.is_none() && cfg!(feature = "proj") {
+        if states_datum && vertical_offset.is_none() && cfg!(feature = "proj") {
             return Ok(Placing {
-                transform: between(crs, WITH_HEIGHTS, &options.transform, journal)?,
+                transform: between(crs, WITH_HEIGHTS, options, journal)?,
                 factor: 1.0,
                 offset: 0.0,
             });
         }
-        if options.vertical_offset.is_none() && heights != Heights::Ellipsoid {
+        if vertical_offset.is_none() && heights != Heights::Ellipsoid {
             journal.add(Notice::HeightsAboveEllipsoid(heights));
         }
         // Heights get their unit and offset here, so PROJ transforms the plan alone.
@@ -59,9 +60,9 @@ impl Placing {
             ..crs.clone()
         };
         Ok(Placing {
-            transform: between(&plan, Tiling::COORDINATES, &options.transform, journal)?,
+            transform: between(&plan, Tiling::COORDINATES, options, journal)?,
             factor: 1.0 / Units::of(Some(crs)).height_of_metres(1.0),
-            offset: options.vertical_offset.unwrap_or(0.0),
+            offset: vertical_offset.unwrap_or(0.0),
         })
     }
 

@@ -187,7 +187,12 @@ pub fn write_terrain_tiles(
     options.check()?;
     let folder = folder.0;
     let (mut pyramid, water) = surface.with_faces(context, |faces| {
-        let placing = Placing::new(faces.crs(), options, &journal)?;
+        let placing = Placing::new(
+            faces.crs(),
+            options.vertical_offset,
+            &options.transform,
+            &journal,
+        )?;
         let pyramid = Pyramid::new(
             faces,
             &|points| placing.apply(points),
