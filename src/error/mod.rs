@@ -173,6 +173,17 @@ impl Error {
         self.in_file(path).within(part)
     }
 
+    /// Names the file that was read. If that is damaged, and no other cure is known, adds one.
+    #[must_use]
+    pub(crate) fn in_input(self, path: impl AsRef<Path>) -> Self {
+        let is_bare = self.inner.kind == Kind::Format && self.inner.cure.is_none();
+        let error = self.in_file(path);
+        match is_bare {
+            true => error.cure("save the file again with the program that it comes from"),
+            false => error,
+        }
+    }
+
     /// Adds what the user can do about it.
     #[must_use]
     pub fn cure(mut self, cure: impl Into<Wording>) -> Self {

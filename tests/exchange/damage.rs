@@ -2,12 +2,47 @@
 
 use std::path::Path;
 
+use breakline::crs::Crs;
+use breakline::data::{Attributes, Layer, Shape, Value};
 use breakline::io::{ascii_grid, layer, mesh};
 use testkit::random::Random;
 
 use crate::sample::field;
 
 type Read = fn(&Path) -> breakline::Result<()>;
+
+fn read_layer(path: &Path) -> breakline::Result<()> {
+    let options = layer::Options {
+        keeps_attributes: true,
+        ..layer::Options::default()
+    };
+    layer::read_with(path, &options, &|_| Ok(())).map(drop)
+}
+
+/// Lines with attributes of all kinds.
+fn lines() -> Layer {
+    let shape = |i: i32| {
+        let at = |k: i32| [512_000.0 + f64::from(i), 5_403_000.5 + f64::from(k), 100.25];
+        Shape::Lines(vec![(0..4).map(at).collect()])
+    };
+    let row = |i: i32| {
+        vec![
+            Value::Whole(i.into()),
+            Value::Number(f64::from(i) / 3.0),
+            Value::Text(format!("line {i}")),
+            Value::Truth(i > 2),
+        ]
+    };
+    Layer {
+        shapes: (0..6).map(shape).collect(),
+        crs: Some(Crs::from_user("EPSG:25832").unwrap()),
+        attributes: Some(Attributes {
+            names: ["id", "width", "name", "open"].map(String::from).into(),
+            rows: (0..6).map(row).collect(),
+        }),
+        ..Layer::default()
+    }
+}
 
 /// Changes some bytes.
 fn mutated(bytes: &[u8], random: &mut Random) -> Vec<u8> {
@@ -44,12 +79,12 @@ fn a_damaged_file_is_an_error_that_names_file_and_place() {
     let cases = std::env::var("BREAKLINE_MUTATIONS")
         .ok()
         .and_then(|n| n.parse().ok())
-        .unwrap_or(60);
+        .unwrap_or(500);
     let folder = tempfile::tempdir().unwrap();
     let mut random = Random(102);
     let grid = "ncols 4\nnrows 3\nxllcorner 512000.5\nyllcorner 5403000\ncellsize 2\nNODATA_value -9999\n\
                 250.5 251 252.25 253\n250 -9999 252 253.125\n251 252 253.5 254\n";
-    let samples: [(&str, Read); 6] = [
+    let samples: [(&str, Read); 9] = [
         ("xml", |path| mesh::read_triangles(path).map(drop)),
         ("glb", |path| mesh::read_triangles(path).map(drop)),
         ("nc", |path| mesh::read_triangles(path).map(drop)),
@@ -57,6 +92,9 @@ fn a_damaged_file_is_an_error_that_names_file_and_place() {
         ("dxf", |path| {
             layer::read(&format!("{}:BOUNDARY", path.display())).map(drop)
         }),
+        ("fgb", read_layer),
+        ("gpkg", read_layer),
+        ("geojson", read_layer),
         ("asc", |path| {
             let grid = ascii_grid::open(path)?;
             grid.read_grid_with(&|_| Ok(())).map(drop)
@@ -66,6 +104,7 @@ fn a_damaged_file_is_an_error_that_names_file_and_place() {
         let path = folder.path().join(format!("a.{extension}"));
         match extension {
             "asc" => std::fs::write(&path, grid).unwrap(),
+            "fgb" | "gpkg" | "geojson" => drop(layer::write_lines(&path, &lines()).unwrap()),
             _ => drop(mesh::write(&path, &field(Some("EPSG:25832"))).unwrap()),
         }
         read(&path).unwrap();
@@ -81,7 +120,11 @@ fn a_damaged_file_is_an_error_that_names_file_and_place() {
                     error.path().is_some() && text.contains(&format!("a.{extension}: ")),
                     "case {case}: {text}"
                 );
-                assert!(error.location().is_some(), "case {case}, no place: {text}");
+                assert!(
+                    error.location().is_some() || extension == "gpkg",
+                    "case {case}, no place: {text}"
+                );
+                assert!(error.cure_text().is_some(), "case {case}, no cure: {text}");
             }
         }
         assert!(errors * 3 > cases, "{extension}: {errors} of {cases}");

@@ -72,7 +72,7 @@ pub fn open(path: impl AsRef<Path>) -> Result<AsciiGrid> {
             warnings,
         })
     };
-    open().map_err(|e: Error| e.in_file(path))
+    open().map_err(|e: Error| e.in_input(path))
 }
 
 impl AsciiGrid {
@@ -108,7 +108,7 @@ impl AsciiGrid {
         let bytes = bytes_of(&self.path, &|_| watch(0))?;
         let values = self
             .values(&bytes, watch)
-            .map_err(|e| e.in_file(&self.path))?;
+            .map_err(|e| e.in_input(&self.path))?;
         let grid = Grid {
             frame: self.frame,
             crs: self.crs.clone(),

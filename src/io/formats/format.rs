@@ -288,10 +288,17 @@ impl Format {
     }
 
     pub(super) fn has_extension(&self, path: &Path) -> bool {
-        let extension = path.extension().unwrap_or_default();
-        self.extensions
-            .iter()
-            .any(|known| extension.eq_ignore_ascii_case(known))
+        let name = path.file_name().unwrap_or_default().as_encoded_bytes();
+        // Of two parts it may be, as in `copc.laz`.
+        let is_it = |known: &&str| {
+            name.len().checked_sub(known.len()).is_some_and(|start| {
+                let (before, end) = name.split_at(start);
+                before.len() > 1
+                    && before.ends_with(b".")
+                    && end.eq_ignore_ascii_case(known.as_bytes())
+            })
+        };
+        self.extensions.iter().any(is_it)
     }
 
     pub(super) fn begins_like(&self, head: &[u8]) -> bool {

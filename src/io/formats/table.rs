@@ -236,7 +236,31 @@ pub static FORMATS: &[Format] = &[
         ..ROW
     },
     Format {
-        name: "LAZ, COPC",
+        name: "COPC",
+        noun: "a COPC file",
+        extensions: &["copc.laz"],
+        magic: &[Magic::At(0, b"LASF")],
+        known_by: KnownBy::Bytes,
+        holds: &[
+            Holding::Points,
+            Holding::Attributes,
+            Holding::Crs,
+            Holding::Compression,
+        ],
+        reader: LIDAR,
+        writers: lidar_writer(|target, sources, rounding| {
+            Ok(Box::new(las::create(
+                target,
+                sources,
+                Packing::Octree,
+                rounding,
+            )?))
+        }),
+        help: "lidar points, compressed, in an octree",
+        ..ROW
+    },
+    Format {
+        name: "LAZ",
         noun: "a LAZ file",
         extensions: &["laz"],
         magic: &[Magic::At(0, b"LASF")],

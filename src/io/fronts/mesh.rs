@@ -269,7 +269,7 @@ fn parse(path: &Path, watch: Watch) -> Result<Triangles> {
         .or_else(|| formats::for_output(file, Product::Surface));
     let read = match format.map(|format| (format, format.reader)) {
         Some((_, FormatReader::Surfaces(read))) => {
-            return read(file, name, watch).map_err(|e| e.in_file(file));
+            return read(file, name, watch).map_err(|e| e.in_input(file));
         }
         Some((_, FormatReader::Mesh(read))) if name.is_none() => read,
         Some((format, FormatReader::Mesh(_))) => {
@@ -292,7 +292,7 @@ fn parse(path: &Path, watch: Watch) -> Result<Triangles> {
         }
         _ => return Err(unknown(path)),
     };
-    read(path, watch).map_err(|e| e.in_file(path))
+    read(path, watch).map_err(|e| e.in_input(path))
 }
 
 /// Splits `FILE:NAME`, which names a surface of a file with several.

@@ -151,6 +151,9 @@ pub(crate) struct InfoArgs {
 /// all points exactly is used; if none can, `--round` is needed. Text (.xyz, .txt, .csv) gets the
 /// coordinates, .csv also the class.
 ///
+/// `.copc.laz` is written as COPC: the points are in the order of an octree, so that viewers and
+/// `--bounds` read a part of it. Point formats 0 to 3 become 6 or 7 there, without loss.
+///
 /// `--a-srs` changes only what the output states. `--t-srs` changes coordinates: scales become
 /// powers of ten that are at least as fine, and offsets follow from the extent.
 #[derive(Debug, Clone, Args)]
@@ -159,7 +162,8 @@ Example:
   breakline points tiles/*.laz --class ground,water --boundary site.shp -o site.laz
   breakline points a.las b.las -o merged.laz
   breakline points tiles/*.laz --class ground --thin grid:1 --thin-keep lowest -o thin.laz
-  breakline points tile.laz --a-srs EPSG:25832+7837 -o tile-with-crs.laz")]
+  breakline points tile.laz --a-srs EPSG:25832+7837 -o tile-with-crs.laz
+  breakline points tiles/*.laz -o all.copc.laz")]
 pub(crate) struct PointsArgs {
     /// Files, globs, `@list.txt` or `-` (stdin)
     ///

@@ -32,12 +32,14 @@
 //! | LAZ: a chunk does not end where it should | error that names its points; the chunks before it are good |
 //! | COPC: octree damaged, or not that of the chunks | error if nodes are chosen by it; with [`OnDamage::Accept`](crate::io::OnDamage) all points, and a warning |
 
+mod copc;
 mod extra;
 mod head;
 mod header;
 mod input;
 mod laz;
 mod merge;
+mod node;
 
 mod plain;
 mod raw;

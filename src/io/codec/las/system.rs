@@ -11,7 +11,7 @@ const USER: &str = "LASF_Projection";
 /// The math transform and the coordinate system in WKT; keys, numbers and text of GeoTIFF.
 const RECORDS: [u16; 5] = [2111, 2112, 34735, 34736, 34737];
 /// The bit of the global encoding that says that the system is in WKT.
-const WKT_BIT: u8 = 1 << 4;
+pub(super) const WKT_BIT: u8 = 1 << 4;
 
 /// States a coordinate system in the head of a file, instead of what it states.
 ///

@@ -5,8 +5,9 @@
 
 use std::io::{Seek, SeekFrom, Write};
 
-use laz::{LazItemRecordBuilder, LazVlr, ParLasZipCompressor};
+use laz::{LazItemRecordBuilder, LazVlr, LazVlrBuilder, ParLasZipCompressor};
 
+use super::copc::{self, Gathered, Widening};
 use super::merge::{self, LatticeStep, Rounding, padded};
 use crate::data::{Bounds, LasHead, Lattice, PointBatch, PointInfo, PointSink, PointSummary};
 use crate::error::{Error, Kind, Result};
@@ -24,13 +25,19 @@ pub enum Packing {
     Plain,
     /// Compressed (LAZ), in chunks of 50 000 points.
     Compressed,
+    /// Compressed, in chunks that are the nodes of an octree (COPC 1.0). The points are in the order
+    /// of the nodes, and written when all are known; until then those of more than 256 MB are in
+    /// files without names next to the output.
+    Octree,
 }
 
 /// A writer for the points of LAS files, made by [`create`].
 pub struct LasWriter<'a> {
     target: Destination<'a>,
-    body: Body,
+    body: Body<'a>,
     head: LasHead,
+    /// How records change before they are written.
+    widening: Option<Widening>,
     lattice: Lattice,
     rounding: Rounding,
     /// Converts from the lattice of the current source to that of the file.
@@ -46,9 +53,10 @@ pub struct LasWriter<'a> {
     high: [i32; 3],
 }
 
-enum Body {
+enum Body<'a> {
     Plain(Output),
     Compressed(Box<ParLasZipCompressor<Output>>),
+    Octree(Output, Box<Gathered<'a>>),
     /// All points were written.
     Done,
 }
@@ -82,9 +90,12 @@ impl std::fmt::Debug for LasWriter<'_> {
 /// Records that are valid for the bytes of one file only, which are the indices of COPC and of
 /// LAStools, are left out.
 ///
+/// COPC is LAS 1.4 and has point formats 6 to 8 only. Formats 0 to 3 become 6 or 7: each field keeps
+/// its value, but has other bytes. The coordinate system is then stated by WKT.
+///
 /// # Errors
 /// If a source is not a LAS or LAZ file, has waveforms, or is incompatible with the others; if the
-/// target cannot be written.
+/// target cannot be written. As COPC, also if a source is of a version above LAS 1.4.
 pub fn create<'a>(
     target: impl Into<Destination<'a>>,
     sources: &[&PointInfo],
@@ -93,9 +104,18 @@ pub fn create<'a>(
 ) -> Result<LasWriter<'a>> {
     let target = target.into();
     let (mut head, lattice) = merge::heads(sources, rounding)?;
+    let widening = match packing {
+        Packing::Octree => copc::prepare(&mut head, sources)?,
+        Packing::Plain | Packing::Compressed => None,
+    };
     let items = match packing {
         Packing::Plain => None,
         Packing::Compressed => Some(LazVlr::from_laz_items(items(&head)?)),
+        Packing::Octree => Some(
+            LazVlrBuilder::new(items(&head)?)
+                .with_variable_chunk_size()
+                .build(),
+        ),
     };
     head.header[104] = head.point_format | if items.is_some() { 0x80 } else { 0 };
     let mut records = head.records.concat();
@@ -121,9 +141,13 @@ pub fn create<'a>(
         output.write_all(&records)
     };
     write(&mut output).map_err(|e| Error::from(e).in_file(target.path()))?;
-    let body = match items {
-        None => Body::Plain(output),
-        Some(items) => Body::Compressed(Box::new(
+    let body = match (items, packing) {
+        (None, _) => Body::Plain(output),
+        (Some(items), Packing::Octree) => {
+            let gathered = Gathered::new(target, items, head.record_length);
+            Body::Octree(output, Box::new(gathered))
+        }
+        (Some(items), _) => Body::Compressed(Box::new(
             ParLasZipCompressor::new(output, items).map_err(failed)?,
         )),
     };
@@ -131,6 +155,7 @@ pub fn create<'a>(
         target,
         body,
         head,
+        widening,
         lattice,
         rounding,
         step: LatticeStep::Same,
@@ -150,7 +175,7 @@ fn items(head: &LasHead) -> Result<Vec<laz::LazItem>> {
     LazItemRecordBuilder::default_for_point_format_id(head.point_format, extra).map_err(failed)
 }
 
-fn failed(error: laz::LasZipError) -> Error {
+pub(super) fn failed(error: laz::LasZipError) -> Error {
     match error {
         laz::LasZipError::IoError(error) => error.into(),
         other => Error::caused_by(Kind::Unsupported, other),
@@ -171,13 +196,15 @@ impl LasWriter<'_> {
     /// Writes the waiting records.
     fn flush(&mut self) -> Result<()> {
         let written = match &mut self.body {
-            Body::Plain(output) => Some(output.write_all(&self.waiting)),
-            Body::Compressed(compressor) => contain(|| compressor.compress_many(&self.waiting)),
-            Body::Done => Some(Ok(())),
+            Body::Plain(output) => output.write_all(&self.waiting).map_err(Error::from),
+            Body::Compressed(compressor) => contain(|| compressor.compress_many(&self.waiting))
+                .ok_or_else(|| Error::format("compressing the points failed"))
+                .and_then(|written| Ok(written?)),
+            Body::Octree(_, gathered) => gathered.push(&self.waiting),
+            Body::Done => Ok(()),
         };
         self.waiting.clear();
-        let written = written.ok_or_else(|| Error::format("compressing the points failed"))?;
-        written.map_err(|e| Error::from(e).in_file(self.target.path()))
+        written.map_err(|e| e.in_file(self.target.path()))
     }
 
     /// Accepts a record that was added to the waiting ones: counts it, and converts it to the
@@ -214,6 +241,17 @@ impl LasWriter<'_> {
         bounds
     }
 
+    /// Returns the bounds that a header states: zeros without points.
+    fn stated_bounds(&self) -> Bounds {
+        if self.count > 0 {
+            return self.bounds();
+        }
+        Bounds {
+            min: [0.0; 3],
+            max: [0.0; 3],
+        }
+    }
+
     /// Returns the header, once all points are known.
     fn header(&self, late_start: u64) -> Result<Vec<u8>> {
         let mut header = self.head.header.clone();
@@ -242,14 +280,7 @@ impl LasWriter<'_> {
                 &(if old.is_some() { *count as u32 } else { 0 }).to_le_bytes(),
             );
         }
-        let bounds = if self.count > 0 {
-            self.bounds()
-        } else {
-            Bounds {
-                min: [0.0; 3],
-                max: [0.0; 3],
-            }
-        };
+        let bounds = self.stated_bounds();
         for axis in 0..3 {
             put(131 + 8 * axis, &self.lattice.scale[axis].to_le_bytes());
             put(155 + 8 * axis, &self.lattice.offset[axis].to_le_bytes());
@@ -279,7 +310,8 @@ impl PointSink for LasWriter<'_> {
     }
 
     fn write(&mut self, batch: &PointBatch) -> Result<()> {
-        let stride = usize::from(self.head.record_length);
+        let length = self.widening.map(|widening| widening.from_length);
+        let stride = usize::from(length.unwrap_or(self.head.record_length));
         if batch.records.len() != batch.len() * stride {
             return Err(Error::usage(format!(
                 "the points lack their records of {stride} bytes"
@@ -287,7 +319,10 @@ impl PointSink for LasWriter<'_> {
         }
         for record in batch.records.chunks_exact(stride) {
             let at = self.waiting.len();
-            self.waiting.extend_from_slice(record);
+            match self.widening {
+                Some(widening) => widening.append(record, &mut self.waiting),
+                None => self.waiting.extend_from_slice(record),
+            }
             self.take(at)?;
         }
         if self.waiting.len() >= self.batch {
@@ -299,6 +334,13 @@ impl PointSink for LasWriter<'_> {
 
     fn finish(mut self: Box<Self>) -> Result<PointSummary> {
         self.flush()?;
+        let mut body = std::mem::replace(&mut self.body, Body::Done);
+        if let Body::Octree(output, gathered) = &mut body {
+            let hierarchy = gathered
+                .write(output, &self.stated_bounds(), self.lattice)
+                .map_err(|e| e.in_file(self.target.path()))?;
+            self.head.late_records.insert(0, hierarchy);
+        }
         let end = |mut output: Output| -> Result<(Output, u64)> {
             let late_start = output.seek(SeekFrom::End(0))?;
             self.head
@@ -308,8 +350,8 @@ impl PointSink for LasWriter<'_> {
             output.seek(SeekFrom::Start(0))?;
             Ok((output, late_start))
         };
-        let (mut output, late_start) = match std::mem::replace(&mut self.body, Body::Done) {
-            Body::Plain(output) => end(output),
+        let (mut output, late_start) = match body {
+            Body::Plain(output) | Body::Octree(output, _) => end(output),
             Body::Compressed(mut compressor) => {
                 let done = contain(|| compressor.done())
                     .ok_or_else(|| Error::format("compressing the points failed"))?;

@@ -5,22 +5,13 @@
 //! where chunks are; what the hierarchy says must agree.
 
 use std::collections::{HashMap, HashSet};
-use std::fmt;
 
 use super::table::Chunk;
 use crate::data::{Bounds, PointBatch};
 use crate::error::{Command, Error, Result, wording};
 use crate::io::bytes::little_endian::{f64_at, u32_at, u64_at};
 use crate::io::codec::las::input::Input;
-
-/// Bytes of the record "copc", 1.
-const INFO: usize = 160;
-
-/// Bytes of an entry of the hierarchy.
-const ENTRY: usize = 32;
-
-/// The deepest level: coordinates of nodes are positive numbers of 32 bits.
-const DEEPEST: u32 = 31;
+use crate::io::codec::las::node::{DEEPEST, ENTRY, INFO, Key};
 
 /// The place of the record that describes the octree, in errors.
 const RECORD: &str = "record \"copc\"";
@@ -32,48 +23,6 @@ const ROUNDING: f64 = 16.0;
 /// How far points may be outside of the octree, as a share of its side. A shared file has points
 /// 0.00001 of it outside.
 const OUTSIDE: f64 = 1.0 / 1024.0;
-
-/// A node: its level, and which cube of that level it is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-struct Key {
-    level: u32,
-    at: [u32; 3],
-}
-
-impl Key {
-    const ROOT: Key = Key {
-        level: 0,
-        at: [0; 3],
-    };
-
-    /// Returns the node at the beginning of an entry; `None` if its level has no such cube.
-    fn of(entry: &[u8]) -> Option<Self> {
-        let level = u32_at(entry, 0);
-        let at = [4, 8, 12].map(|start| u32_at(entry, start));
-        let is_cube = level <= DEEPEST && at.iter().all(|&at| u64::from(at) < 1 << level);
-        is_cube.then_some(Key { level, at })
-    }
-
-    /// Returns the node of another level, not a deeper one, that this one is part of.
-    fn on(self, level: u32) -> Self {
-        let up = self.level - level;
-        Key {
-            level,
-            at: self.at.map(|at| at >> up),
-        }
-    }
-
-    fn is_part_of(self, other: Self) -> bool {
-        self.level >= other.level && self.on(other.level) == other
-    }
-}
-
-impl fmt::Display for Key {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [x, y, z] = self.at;
-        write!(f, "{}-{x}-{y}-{z}", self.level)
-    }
-}
 
 /// The octree of a file.
 #[derive(Debug)]
