@@ -172,15 +172,22 @@ impl Layer {
         chosen.copied().unwrap_or(at + 1)
     }
 
-    /// Keeps the shapes that are marked true in `held`, with their values; removes all others.
-    pub(crate) fn keep(&mut self, held: &[bool]) {
-        let chosen = (0..self.shapes.len()).filter(|&at| held.get(at) == Some(&true));
-        self.chosen = Some(chosen.map(|at| self.record(at)).collect());
+    /// Of the shapes behind those that are chosen already, keeps those that are marked true in
+    /// `held`, with their values; removes the others. The first of them has this many before it in
+    /// the file.
+    pub(crate) fn keep(&mut self, before: usize, held: &[bool]) {
+        let chosen = self.chosen.get_or_insert_default();
+        let first = chosen.len();
+        chosen.extend(
+            (0..held.len())
+                .filter(|&at| held[at])
+                .map(|at| before + at + 1),
+        );
         let columns = self.columns.iter_mut();
-        columns.for_each(|column| retain(&mut column.values, held));
-        retain(&mut self.shapes, held);
+        columns.for_each(|column| retain(&mut column.values, first, held));
+        retain(&mut self.shapes, first, held);
         if let Some(attributes) = &mut self.attributes {
-            retain(&mut attributes.rows, held);
+            retain(&mut attributes.rows, first, held);
         }
     }
 
@@ -193,8 +200,9 @@ impl Layer {
     }
 }
 
-/// Keeps the values that are marked true in `held`, and removes all others.
-fn retain<T>(values: &mut Vec<T>, held: &[bool]) {
-    let mut held = held.iter();
-    values.retain(|_| held.next() == Some(&true));
+/// Of the values from the first one on, keeps those that are marked true in `held`.
+fn retain<T>(values: &mut Vec<T>, first: usize, held: &[bool]) {
+    let last = values.split_off(first.min(values.len()));
+    let kept = last.into_iter().zip(held).filter(|(_, held)| **held);
+    values.extend(kept.map(|(value, _)| value));
 }

@@ -181,7 +181,7 @@ pub fn read_with(path: &Path, options: &Options, watch: Watch) -> Result<Layer> 
     }
     match formats::detect_file(path)?.and_then(|format| format.reader.layer()) {
         Some(read) => options
-            .read_chosen(watch, |options| read(path, options, watch))
+            .read_chosen(|options| read(path, options, watch))
             .map_err(|error| error.in_input(path)),
         None => Err(unsupported(path)),
     }

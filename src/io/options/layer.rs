@@ -4,7 +4,6 @@ use super::condition::Condition;
 use super::cut::OnDamage;
 use crate::data::{Column, Layer};
 use crate::error::{Error, Result};
-use crate::io::bytes::watch::Watch;
 
 /// The layer and the attributes to read of a vector file. Names are compared as written, else in
 /// any case.
@@ -23,8 +22,9 @@ pub struct Options<'a> {
     /// [`Layer::attributes`](crate::data::Layer::attributes), for a copy of the layer. The readers
     /// of shapefiles, GeoPackage and GeoJSON keep them.
     pub keeps_attributes: bool,
-    /// Which records are returned; `None` for all. Evaluated when the layer has been read, of the
-    /// attributes that [`keeps_attributes`](Self::keeps_attributes) would return.
+    /// Which records are returned; `None` for all. Evaluated of the attributes that
+    /// [`keeps_attributes`](Self::keeps_attributes) would return: of GeoPackage and FlatGeobuf as
+    /// they are read, so that others are not kept; of other formats when the layer has been read.
     pub condition: Option<&'a Condition>,
     /// What to do with files of which a part is missing or damaged.
     pub cut: OnDamage,
@@ -41,33 +41,25 @@ impl Options<'_> {
     }
 
     /// Reads a layer, and removes the records for which the condition, if there is one, does not
-    /// hold.
+    /// hold, unless the reader has done so as it read them.
     ///
     /// # Errors
-    /// Those of `read` and of the watch; if the layer lacks an attribute of the condition, or the
-    /// format has none that are read.
+    /// Those of `read`; if the layer lacks an attribute of the condition, or the format has none
+    /// that are read.
     pub(crate) fn read_chosen(
         &self,
-        watch: Watch,
         read: impl FnOnce(&Options) -> Result<Layer>,
     ) -> Result<Layer> {
-        let Some(condition) = self.condition else {
+        if self.condition.is_none() {
             return read(self);
-        };
+        }
         let mut layer = read(&Options {
             keeps_attributes: true,
-            condition: None,
             ..*self
         })?;
-        let Some(attributes) = &layer.attributes else {
-            return Err(Error::unsupported(format!(
-                "{} has no attributes that are read, which `{}` needs",
-                layer.format,
-                condition.text()
-            )));
-        };
-        let names = attributes.names.clone();
-        condition.bind(&names)?.choose(&mut layer, watch)?;
+        if layer.chosen.is_none() {
+            self.choosing(&layer)?.finish(&mut layer)?;
+        }
         if !self.keeps_attributes {
             layer.attributes = None;
         }

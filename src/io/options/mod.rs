@@ -1,5 +1,6 @@
 //! What callers ask of readers.
 
+pub(crate) mod choosing;
 pub(crate) mod condition;
 pub(crate) mod cut;
 pub(crate) mod las;

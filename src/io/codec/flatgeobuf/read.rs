@@ -1,5 +1,7 @@
 //! Reading: all records, in the order of the file.
 
+use std::fs::File;
+use std::io::{BufReader, Read};
 use std::path::Path;
 
 use super::buffer::{Buffer, Table};
@@ -8,8 +10,10 @@ use super::schema::{self, ColumnType, MAGIC, MAGIC_COMPARED, kind};
 use crate::data::{Layer, Shape, Value, oriented};
 use crate::error::{Error, Result};
 use crate::io::bytes::field::{not_a_number, number_of};
+use crate::io::bytes::little_endian::u32_at;
 use crate::io::bytes::watch::{Meter, Watch, bytes_of};
 use crate::io::codec::stated_system;
+use crate::io::options::choosing::Choosing;
 use crate::io::options::layer::Options;
 use crate::io::options::layers::{
     Fields, check_depth, set_heights, warn_of_bytes, warn_of_missing_heights,
@@ -28,30 +32,49 @@ const LARGEST_HEADER: usize = 10 << 20;
 /// requested column is not a number, or a geometry has arcs; that of the watch.
 ///
 /// # Complexity
-/// Linear. In memory are the bytes of the file, and the layer.
+/// Linear. In memory are a record, and the layer.
 pub fn read_layer_with(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
-    let bytes = bytes_of(path, watch)?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    parse(&bytes, &stem, options, watch).map_err(|error| error.in_file(path))
+    let read = || {
+        let file = File::open(path)?;
+        let facts = file.metadata()?;
+        if facts.is_file() {
+            let file = BufReader::with_capacity(1 << 18, file);
+            return parse(file, facts.len(), &stem, options, watch);
+        }
+        // A pipe does not say how much there is.
+        let bytes = bytes_of(path, watch)?;
+        parse(&bytes[..], bytes.len() as u64, &stem, options, watch)
+    };
+    read().map_err(|error: Error| error.in_file(path))
 }
 
-pub(super) fn parse(bytes: &[u8], stem: &str, options: &Options, watch: Watch) -> Result<Layer> {
-    let rest = magic(bytes)?;
-    let (header, rest) = sized(rest)
-        .ok_or_else(|| cut(bytes.len()).at("header"))
-        .and_then(|(header, rest)| match header.len() > LARGEST_HEADER {
-            true => Err(Error::limit(format!("{} bytes of header", header.len())).at("header")),
-            false => Ok((header, rest)),
-        })?;
-    let buffer = Buffer::new(header);
+/// Reads a layer from its bytes, of which there are said to be this many.
+pub(super) fn parse(
+    from: impl Read,
+    length: u64,
+    stem: &str,
+    options: &Options,
+    watch: Watch,
+) -> Result<Layer> {
+    let mut source = Source {
+        from,
+        length,
+        left: length,
+    };
+    source.magic()?;
+    let mut header = Vec::new();
+    source
+        .sized(LARGEST_HEADER, &mut header)
+        .map_err(|error| error.at("header"))?;
+    let buffer = Buffer::new(&header);
     let head = Head::read(&buffer).map_err(|error| error.at("header"))?;
     let names = [stem, &head.name];
     let known = if head.name.is_empty() { 1 } else { 2 };
     options.check_layer(&names[..known])?;
-    let rest = usize::try_from(head.index_bytes)
-        .ok()
-        .and_then(|bytes| rest.get(bytes..))
-        .ok_or_else(|| cut(bytes.len()).at("index"))?;
+    source
+        .skip(head.index_bytes)
+        .map_err(|error| error.at("index"))?;
     let fields: Vec<String> = head.columns.iter().map(|(name, _)| name.clone()).collect();
     let mut reading = Reading {
         fields: Fields::of(&fields, options.height_field, options.columns)?,
@@ -64,12 +87,14 @@ pub(super) fn parse(bytes: &[u8], stem: &str, options: &Options, watch: Watch) -
     };
     head.read_system(&mut reading.layer)
         .map_err(|error| error.at("header"))?;
-    reading.records(rest, bytes.len(), watch)?;
+    let mut choosing = options.choosing(&reading.layer)?;
+    reading.records(&mut source, &mut choosing, watch)?;
     let Reading {
         mut layer,
         without_height,
         ..
     } = reading;
+    choosing.finish(&mut layer)?;
     let of_bytes = head.columns.iter();
     let of_bytes = of_bytes.filter(|(_, kind)| *kind == ColumnType::Binary);
     warn_of_bytes(of_bytes.map(|(name, _)| name.as_str()), &mut layer);
@@ -77,29 +102,77 @@ pub(super) fn parse(bytes: &[u8], stem: &str, options: &Options, watch: Watch) -
     Ok(layer)
 }
 
-#[cold]
-fn cut(length: usize) -> Error {
-    Error::format(format!(
-        "it goes on behind the end of the file, at byte {length}"
-    ))
-    .cure("copy or download the file again")
+/// The bytes of a file that were not read yet.
+struct Source<R> {
+    from: R,
+    length: u64,
+    left: u64,
 }
 
-/// Returns what is behind the first bytes.
-fn magic(bytes: &[u8]) -> Result<&[u8]> {
-    let (found, rest) = bytes.split_at_checked(MAGIC.len()).unwrap_or((bytes, &[]));
-    if found.get(..MAGIC_COMPARED) == Some(&MAGIC[..MAGIC_COMPARED]) {
-        return Ok(rest);
+impl<R: Read> Source<R> {
+    #[cold]
+    fn cut(&self) -> Error {
+        let length = self.length;
+        Error::format(format!(
+            "it goes on behind the end of the file, at byte {length}"
+        ))
+        .cure("copy or download the file again")
     }
-    let error = match found.starts_with(b"fgb") && found.len() == MAGIC.len() {
-        true => Error::unsupported(format!("version {} of FlatGeobuf", found[3]))
-            .cure("save it as version 3, or as GeoPackage"),
-        false => Error::format("it does not begin as a FlatGeobuf file does"),
-    };
-    Err(error.at("byte 0"))
+
+    /// Fills a list with the next bytes, which must be there.
+    fn take(&mut self, count: u64, into: &mut Vec<u8>) -> Result<()> {
+        into.clear();
+        if count > self.left {
+            return Err(self.cut());
+        }
+        self.left -= count;
+        let read = self.from.by_ref().take(count).read_to_end(into)?;
+        match read as u64 == count {
+            true => Ok(()),
+            // It became shorter while it was read.
+            false => Err(self.cut()),
+        }
+    }
+
+    fn skip(&mut self, count: u64) -> Result<()> {
+        if count > self.left {
+            return Err(self.cut());
+        }
+        self.left -= count;
+        let passed = std::io::copy(&mut self.from.by_ref().take(count), &mut std::io::sink())?;
+        match passed == count {
+            true => Ok(()),
+            false => Err(self.cut()),
+        }
+    }
+
+    /// Fills a list with a buffer, which begins with its length.
+    fn sized(&mut self, most: usize, into: &mut Vec<u8>) -> Result<()> {
+        self.take(4, into)?;
+        let size = u32_at(into, 0);
+        if size as usize > most && u64::from(size) <= self.left {
+            return Err(Error::limit(format!("{size} bytes of header")));
+        }
+        self.take(size.into(), into)
+    }
+
+    /// Reads the first bytes.
+    fn magic(&mut self) -> Result<()> {
+        let mut found = Vec::new();
+        self.take(self.left.min(MAGIC.len() as u64), &mut found)?;
+        if found.len() == MAGIC.len() && found[..MAGIC_COMPARED] == MAGIC[..MAGIC_COMPARED] {
+            return Ok(());
+        }
+        let error = match found.starts_with(b"fgb") && found.len() == MAGIC.len() {
+            true => Error::unsupported(format!("version {} of FlatGeobuf", found[3]))
+                .cure("save it as version 3, or as GeoPackage"),
+            false => Error::format("it does not begin as a FlatGeobuf file does"),
+        };
+        Err(error.at("byte 0"))
+    }
 }
 
-/// Splits off a buffer that begins with its length.
+/// Splits off a text or a list of bytes that begins with its length.
 fn sized(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
     let (length, rest) = bytes.split_first_chunk()?;
     rest.split_at_checked(u32::from_le_bytes(*length) as usize)
@@ -177,24 +250,30 @@ struct Reading<'a> {
 }
 
 impl Reading<'_> {
-    fn records(&mut self, mut rest: &[u8], length: usize, watch: Watch) -> Result<()> {
-        let mut meter = Meter::new(watch, rest.len());
-        let mut record = 0;
-        while !rest.is_empty() && self.head.count != Some(record) {
+    fn records(
+        &mut self,
+        source: &mut Source<impl Read>,
+        choosing: &mut Choosing,
+        watch: Watch,
+    ) -> Result<()> {
+        let mut meter = Meter::new(watch, source.left as usize);
+        let (mut record, mut bytes) = (0, Vec::new());
+        while source.left > 0 && self.head.count != Some(record) {
             record += 1;
+            let at = source.length - source.left;
             let location = |error: Error| error.within(format!("record {record}"));
-            let (bytes, behind) = sized(rest)
-                .ok_or_else(|| cut(length).at(format!("byte {}", length - rest.len())))
-                .map_err(location)?;
-            self.add(bytes).map_err(location)?;
-            rest = behind;
-            meter.left(rest.len())?;
+            source
+                .sized(usize::MAX, &mut bytes)
+                .map_err(|error| location(error.at(format!("byte {at}"))))?;
+            self.add(&bytes).map_err(location)?;
+            choosing.added(&mut self.layer)?;
+            meter.left(source.left as usize)?;
         }
         match self.head.count {
             Some(count) if record < count => Err(Error::format(format!(
                 "{count} records are stated, {record} are there"
             ))
-            .at(format!("byte {length}"))
+            .at(format!("byte {}", source.length))
             .cure("copy or download the file again")),
             _ => Ok(()),
         }

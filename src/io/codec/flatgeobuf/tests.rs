@@ -14,7 +14,7 @@ fn parse(bytes: &[u8]) -> Result<Layer> {
         keeps_attributes: true,
         ..Options::default()
     };
-    read::parse(bytes, "a", &options, &unwatched)
+    read::parse(bytes, bytes.len() as u64, "a", &options, &unwatched)
 }
 
 fn written(layer: &Layer) -> Vec<u8> {

@@ -45,7 +45,7 @@ pub fn read_layer(path: &Path, layer: Option<&str>) -> Result<Layer> {
 /// requested column is not a number.
 pub fn read_layer_with(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
     options
-        .read_chosen(watch, |options| read_all(path, options, watch))
+        .read_chosen(|options| read_all(path, options, watch))
         .map_err(|error| error.in_file(path))
 }
 

@@ -267,6 +267,7 @@ impl Source {
             ..options.empty_layer(names)
         };
         self.read_system(database, &mut layer)?;
+        let mut choosing = options.choosing(&layer)?;
         let mut statement = database.prepare(&self.query()).map_err(damaged)?;
         let mut rows = statement.query([]).map_err(damaged)?;
         let mut without_height = 0;
@@ -278,7 +279,9 @@ impl Source {
             record += 1;
             let added = self.add(row, &fields, &mut layer);
             without_height += usize::from(added.map_err(|e| e.at(self.name_of(row, record)))?);
+            choosing.added(&mut layer)?;
         }
+        choosing.finish(&mut layer)?;
         let of_bytes = self.fields.iter().filter(|field| field.has_bytes());
         warn_of_bytes(of_bytes.map(|field| field.name.as_str()), &mut layer);
         warn_of_missing_heights(without_height, &mut layer);

@@ -13,13 +13,12 @@ mod tests;
 use std::fmt;
 
 use self::parse::Node;
-use crate::data::{Layer, Value, named};
+use crate::data::{Value, named};
 use crate::error::{Error, Result};
 use crate::io::bytes::field::no_such_field;
-use crate::io::bytes::watch::Watch;
 
-/// Records whose condition is evaluated between two calls of the watch.
-const RECORDS_AT_ONCE: usize = 1024;
+/// Records whose condition is evaluated together, while a layer is read.
+pub(crate) const RECORDS_AT_ONCE: usize = 1024;
 
 /// A condition on the attributes of a record, such as `kind = 'toe' AND height > 2.5`.
 ///
@@ -135,30 +134,9 @@ impl BoundCondition<'_> {
         })
     }
 
-    /// Removes the records of a layer for which the condition does not hold. A layer of which none
-    /// is left has a warning.
-    ///
-    /// # Errors
-    /// If the layer was read without its attributes; that of [`holds`](Self::holds), with the
-    /// number of the record, and that of the watch.
-    pub(crate) fn choose(&self, layer: &mut Layer, watch: Watch) -> Result<()> {
-        let mut held = Vec::with_capacity(layer.shapes.len());
-        for record in 0..layer.shapes.len() {
-            if record % RECORDS_AT_ONCE == 0 {
-                watch(0)?;
-            }
-            let rows = layer.attributes.as_ref().map(|found| &found.rows);
-            let row = rows.and_then(|rows| rows.get(record));
-            let holds = self.holds(row.map_or(&[], Vec::as_slice));
-            held.push(holds.map_err(|e| e.at(format!("record {}", record + 1)))?);
-        }
-        if !held.is_empty() && !held.contains(&true) {
-            let count = held.len();
-            let none = format!("none of {count} records is true for `{}`", self.text);
-            layer.warnings.push(none.into());
-        }
-        layer.keep(&held);
-        Ok(())
+    /// Returns the condition as it was written.
+    pub(crate) fn text(&self) -> &str {
+        self.text
     }
 }
 
