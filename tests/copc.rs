@@ -788,16 +788,16 @@ fn a_written_file_that_is_damaged_is_refused_or_read() {
 #[test]
 fn what_has_no_room_in_an_octree_is_refused() {
     let folder = tempfile::tempdir().unwrap();
-    let files = old_files(folder.path());
-    // A version that this one does not know.
-    let mut bytes = std::fs::read(&files[0]).unwrap();
-    bytes[25] = 5;
-    std::fs::write(&files[1], &bytes).unwrap();
-    let run = run_in(&folder, &["points", "1.las", "-o", "a.copc.laz"]);
-    run.fails(1, &["COPC is LAS 1.4", ".laz"]);
-    assert!(!folder.path().join("a.copc.laz").exists());
+    old_files(folder.path());
     let run = run_in(&folder, &["points", "0.las", "-o", "a.COPC.laz"]);
     run.works(&["60000 points"]);
+    // A version whose header has more fields.
+    let mut bytes = std::fs::read(folder.path().join("a.COPC.laz")).unwrap();
+    bytes[25] = 5;
+    std::fs::write(folder.path().join("1.laz"), &bytes).unwrap();
+    let run = run_in(&folder, &["points", "1.laz", "-o", "b.copc.laz"]);
+    run.fails(1, &["COPC is LAS 1.4", ".laz"]);
+    assert!(!folder.path().join("b.copc.laz").exists());
     let info = run_in(&folder, &["info", "a.COPC.laz", "--copc-resolution", "2"]);
     assert!(info.stdout.contains(" points"), "{}", info.stderr);
 }

@@ -1,15 +1,25 @@
 //! Damaged files of each format that is read: an error names the file and a place in it.
 
 use std::path::Path;
+use std::process::Command;
 
 use breakline::crs::Crs;
 use breakline::data::{Attributes, Layer, Shape, Value};
 use breakline::io::{ascii_grid, layer, mesh};
 use testkit::random::Random;
 
+use crate::program::files_of;
 use crate::sample::field;
 
 type Read = fn(&Path) -> breakline::Result<()>;
+
+/// The number of damaged files of each format.
+fn cases(few: usize) -> usize {
+    std::env::var("BREAKLINE_MUTATIONS")
+        .ok()
+        .and_then(|n| n.parse().ok())
+        .unwrap_or(few)
+}
 
 fn read_layer(path: &Path) -> breakline::Result<()> {
     let options = layer::Options {
@@ -76,10 +86,7 @@ fn mutated(bytes: &[u8], random: &mut Random) -> Vec<u8> {
 
 #[test]
 fn a_damaged_file_is_an_error_that_names_file_and_place() {
-    let cases = std::env::var("BREAKLINE_MUTATIONS")
-        .ok()
-        .and_then(|n| n.parse().ok())
-        .unwrap_or(500);
+    let cases = cases(500);
     let folder = tempfile::tempdir().unwrap();
     let mut random = Random(102);
     let grid = "ncols 4\nnrows 3\nxllcorner 512000.5\nyllcorner 5403000\ncellsize 2\nNODATA_value -9999\n\
@@ -129,4 +136,54 @@ fn a_damaged_file_is_an_error_that_names_file_and_place() {
         }
         assert!(errors * 3 > cases, "{extension}: {errors} of {cases}");
     }
+}
+
+/// Through the program, with an address space of 1 GB.
+#[test]
+fn a_damaged_file_takes_little_memory_and_leaves_nothing() {
+    const MEMORY: &str = "1000000";
+    let cases = cases(500) / 40;
+    let mut random = Random(103);
+    let mut failed = 0;
+    let extensions = ["xml", "glb", "nc", "2dm", "fgb", "gpkg", "geojson"];
+    for extension in extensions {
+        let folder = tempfile::tempdir().unwrap();
+        let name = format!("a.{extension}");
+        let path = folder.path().join(&name);
+        let verb = match extension {
+            "fgb" | "gpkg" | "geojson" => {
+                layer::write_lines(&path, &lines()).unwrap();
+                ["tin", &name, "-o", "out.ply"].as_slice()
+            }
+            _ => {
+                mesh::write(&path, &field(Some("EPSG:25832"))).unwrap();
+                ["contour", &name, "--interval=1", "-o", "out.geojson"].as_slice()
+            }
+        };
+        let bytes = std::fs::read(&path).unwrap();
+        for case in 0..cases {
+            std::fs::write(&path, mutated(&bytes, &mut random)).unwrap();
+            let output = Command::new("sh")
+                .current_dir(folder.path())
+                .args(["-c", "ulimit -v \"$0\" && exec \"$@\"", MEMORY])
+                .arg(assert_cmd::cargo::cargo_bin!("breakline"))
+                .args(verb)
+                .arg("--threads=1")
+                .output()
+                .unwrap();
+            let said = String::from_utf8_lossy(&output.stderr);
+            let code = output.status.code();
+            assert!(code.is_some_and(|code| code < 3), "{name} {case}: {said}");
+            assert!(!said.contains("panicked"), "{name} {case}: {said}");
+            let written = verb.last().map(|name| folder.path().join(name)).unwrap();
+            if code == Some(0) {
+                std::fs::remove_file(written).unwrap();
+                continue;
+            }
+            failed += 1;
+            assert!(said.contains("\nhint: "), "{name} {case}: {said}");
+            assert_eq!(files_of(folder.path()), [name.as_str()], "{case}: {said}");
+        }
+    }
+    assert!(failed > cases, "{failed} of {cases} in each format");
 }
