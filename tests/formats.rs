@@ -45,7 +45,7 @@ fn rows_are_whole() {
             assert!(
                 extension
                     .chars()
-                    .all(|c| c.is_ascii_lowercase() || c.is_ascii_digit()),
+                    .all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '.'),
                 "{extension}"
             );
         }
@@ -101,7 +101,10 @@ fn files_are_known_by_bytes_and_name() {
     for (head, path, expected) in [
         (&b"LASF"[..], "a.las", Some("LAS")),
         (b"LASF", "a.ply", Some("LAS")),
-        (b"hello", "a.laz", Some("LAZ, COPC")),
+        (b"hello", "a.laz", Some("LAZ")),
+        (b"hello", "a.COPC.laz", Some("COPC")),
+        (b"hello", ".copc.laz", Some("LAZ")),
+        (b"hello", "copc.laz", Some("LAZ")),
         (b"II*\0rest", "a.xyz", Some("GeoTIFF")),
         (b"MM\0+rest", "a", Some("GeoTIFF")),
         (b"hello", "a.tif", Some("GeoTIFF")),
@@ -135,7 +138,10 @@ fn files_are_known_by_bytes_and_name() {
 #[test]
 fn products_have_the_extensions_that_they_had() {
     for (product, extensions) in [
-        (Product::Points, &["las", "laz", "xyz", "txt", "csv"][..]),
+        (
+            Product::Points,
+            &["las", "copc.laz", "laz", "xyz", "txt", "csv"][..],
+        ),
         (
             Product::Surface,
             &[

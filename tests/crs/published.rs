@@ -1,14 +1,15 @@
 //! Transforms against points that others have published.
 //!
 //! Each value was looked up in a text of who published it:
-//! - GIGS: the test data set of the IOGP of 2022-10-12 (`IOGP-GIGS/GIGSTestDataset`), with the number
-//!   of the series and its part. Geocentric coordinates have the digits of version 2.0 of 2011, as
-//!   PROJ has it in `test/gigs`.
+//! - GIGS: the test data set of the IOGP of 2022-10-12 (`IOGP-GIGS/GIGSTestDataset`), with the
+//!   number of the series and its part. Geocentric coordinates have the digits of version 2.0 of
+//!   2011, as PROJ has it in `test/gigs`.
 //! - G7-2: the worked examples of EPSG's guidance note 7 part 2 with the code of the method, as the
 //!   EPSG dataset gives them in its table of coordinate operation methods. The geocentric
 //!   coordinates of 9602 have the digits of the note itself, which PROJ quotes in its page on
 //!   topocentric conversions.
-//! - GDA2020: the technical manual of that datum, version 1.0, as PROJ has it in `test/gie/GDA.gie`.
+//! - GDA2020: the technical manual of that datum, version 1.0, as PROJ has it in
+//!   `test/gie/GDA.gie`.
 //! - EPSG 5438: the transformation of that code in the EPSG dataset.
 //!
 //! `docs/reprojection.md` names published points that differ by more than a millimeter, and why.

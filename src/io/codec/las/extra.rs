@@ -1,8 +1,7 @@
 //! Extra bytes: numbers that are appended to the records of points, and their descriptions.
 
-use super::merge::usual_length;
+use super::merge::{record_header, usual_length};
 use super::raw::{VLR_HEADER, until_zero};
-use super::write::record_header;
 use crate::data::{LasHead, PointBatch};
 use crate::error::{Error, Result, Setting, wording};
 use crate::io::bytes::little_endian::u16_at;

@@ -38,6 +38,16 @@ pub(super) fn padded<const N: usize>(text: &str) -> [u8; N] {
     field
 }
 
+/// Returns the header of a variable length record.
+pub(super) fn record_header(user: &str, id: u16, length: u16, description: &str) -> Vec<u8> {
+    let mut bytes = vec![0; 2];
+    bytes.extend(padded::<16>(user));
+    bytes.extend(id.to_le_bytes());
+    bytes.extend(length.to_le_bytes());
+    bytes.extend(padded::<32>(description));
+    bytes
+}
+
 /// A conversion of steps of one lattice to those of another.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum LatticeStep {

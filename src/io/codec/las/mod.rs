@@ -40,7 +40,7 @@ mod input;
 mod laz;
 mod merge;
 mod node;
-
+mod packed;
 mod plain;
 mod raw;
 mod reader;

@@ -1,7 +1,7 @@
 //! Writes a coordinate system into the head of a LAS file.
 
+use super::merge::record_header;
 use super::raw::until_zero;
-use super::write::record_header;
 use crate::crs::{Crs, GeoKeys};
 use crate::data::LasHead;
 use crate::error::{Error, Result};

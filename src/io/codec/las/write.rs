@@ -5,12 +5,13 @@
 
 use std::io::{Seek, SeekFrom, Write};
 
-use laz::{LazItemRecordBuilder, LazVlr, LazVlrBuilder, ParLasZipCompressor};
+use laz::{LazVlr, LazVlrBuilder, ParLasZipCompressor};
 
 use super::copc::{self, Gathered, Widening};
-use super::merge::{self, LatticeStep, Rounding, padded};
+use super::merge::{self, LatticeStep, Rounding, record_header};
+use super::packed::{failed, items};
 use crate::data::{Bounds, LasHead, Lattice, PointBatch, PointInfo, PointSink, PointSummary};
-use crate::error::{Error, Kind, Result};
+use crate::error::{Error, Result};
 use crate::io::bytes::contain::contain;
 use crate::io::bytes::little_endian::u32_at;
 use crate::io::bytes::output::{Destination, Output};
@@ -25,9 +26,9 @@ pub enum Packing {
     Plain,
     /// Compressed (LAZ), in chunks of 50 000 points.
     Compressed,
-    /// Compressed, in chunks that are the nodes of an octree (COPC 1.0). The points are in the order
-    /// of the nodes, and written when all are known; until then those of more than 256 MB are in
-    /// files without names next to the output.
+    /// Compressed, in chunks that are the nodes of an octree (COPC 1.0). The points are in the
+    /// order of the nodes, and written when all are known; until then those of more than 256 MB
+    /// are in files without names next to the output.
     Octree,
 }
 
@@ -90,8 +91,8 @@ impl std::fmt::Debug for LasWriter<'_> {
 /// Records that are valid for the bytes of one file only, which are the indices of COPC and of
 /// LAStools, are left out.
 ///
-/// COPC is LAS 1.4 and has point formats 6 to 8 only. Formats 0 to 3 become 6 or 7: each field keeps
-/// its value, but has other bytes. The coordinate system is then stated by WKT.
+/// COPC is LAS 1.4 and has point formats 6 to 8 only. Formats 0 to 3 become 6 or 7: each field
+/// keeps its value, but has other bytes. The coordinate system is then stated by WKT.
 ///
 /// # Errors
 /// If a source is not a LAS or LAZ file, has waveforms, or is incompatible with the others; if the
@@ -168,28 +169,6 @@ pub fn create<'a>(
         low: [i32::MAX; 3],
         high: [i32::MIN; 3],
     })
-}
-
-fn items(head: &LasHead) -> Result<Vec<laz::LazItem>> {
-    let extra = head.record_length - merge::usual_length(head.point_format);
-    LazItemRecordBuilder::default_for_point_format_id(head.point_format, extra).map_err(failed)
-}
-
-pub(super) fn failed(error: laz::LasZipError) -> Error {
-    match error {
-        laz::LasZipError::IoError(error) => error.into(),
-        other => Error::caused_by(Kind::Unsupported, other),
-    }
-}
-
-/// Returns the header of a variable length record.
-pub(super) fn record_header(user: &str, id: u16, length: u16, description: &str) -> Vec<u8> {
-    let mut bytes = vec![0; 2];
-    bytes.extend(padded::<16>(user));
-    bytes.extend(id.to_le_bytes());
-    bytes.extend(length.to_le_bytes());
-    bytes.extend(padded::<32>(description));
-    bytes
 }
 
 impl LasWriter<'_> {

@@ -116,7 +116,7 @@ impl Divider {
         scratch: &dyn Fn() -> Result<File>,
         write: &mut dyn FnMut(Vec<Node>) -> Result<()>,
     ) -> Result<()> {
-        if list.bytes() <= self.sizes.held || key.level == DEEPEST {
+        if list.bytes() <= self.sizes.held || self.is_leaf(key, &list) {
             let held = List::held(self.stride, list.into_bytes()?);
             return write(self.divide_held(key, held)?);
         }
@@ -131,9 +131,13 @@ impl Divider {
         Ok(())
     }
 
+    fn is_leaf(&self, key: Key, list: &List) -> bool {
+        list.count() <= self.sizes.leaf || key.level == DEEPEST
+    }
+
     /// Returns the nodes of records in memory.
     fn divide_held(&self, key: Key, list: List) -> Result<Vec<Node>> {
-        if list.count() <= self.sizes.leaf || key.level == DEEPEST {
+        if self.is_leaf(key, &list) {
             if list.count() > self.sizes.most {
                 return Err(Error::limit(format!(
                     "{} points are at one position; at most {} can be in a node of COPC",

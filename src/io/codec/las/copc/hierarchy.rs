@@ -36,11 +36,11 @@ impl Hierarchy {
             let above = page_of(key.on(key.level - 1));
             below.entry(above).or_default().insert(key);
         }
-        let (mut places, mut end) = (BTreeMap::new(), start);
+        let (mut sites, mut end) = (BTreeMap::new(), start);
         for (key, list) in &lists {
             let entries = list.len() + below.get(key).map_or(0, BTreeSet::len);
             let bytes = (entries * ENTRY) as u32;
-            places.insert(*key, (end, bytes));
+            sites.insert(*key, (end, bytes));
             end += u64::from(bytes);
         }
         let mut pages = Vec::with_capacity((end - start) as usize);
@@ -49,11 +49,11 @@ impl Hierarchy {
                 pages.extend(chunk.key.entry(chunk.start, chunk.bytes, chunk.points));
             }
             for page in below.get(key).into_iter().flatten() {
-                let (start, bytes) = places[page];
+                let (start, bytes) = sites[page];
                 pages.extend(page.entry(start, bytes, -1));
             }
         }
-        let first = places.get(&Key::ROOT).map_or(0, |&(_, bytes)| bytes.into());
+        let first = sites.get(&Key::ROOT).map_or(0, |&(_, bytes)| bytes.into());
         Hierarchy { pages, first }
     }
 }

@@ -95,7 +95,8 @@ fn each_point_is_in_one_node_and_within_it() {
             }
         }
         assert_eq!(found.len(), count as usize);
-        assert_eq!(nodes.len() == 1, count <= 40, "{count} {side}");
+        // Of a few more than a leaf has, too few may be left for nodes below.
+        assert!((nodes.len() == 1) == (count <= 41), "{count} {side}");
     }
 }
 
