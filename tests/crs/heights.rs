@@ -206,7 +206,7 @@ fn terrain_tiles_have_heights_above_the_ellipsoid_by_a_grid() {
     let tiles = folder.path().join("tiles");
     let make = |options: &[&str]| {
         let words = "terrain-tiles level.xyz --max-edge none --force-degrees --max-level 12 \
-            --max-error 0.1 --no-gzip --overwrite -o tiles";
+            --no-gzip --overwrite -o tiles";
         let args: Vec<&str> = words
             .split_whitespace()
             .chain(options.iter().copied())
@@ -215,14 +215,15 @@ fn terrain_tiles_have_heights_above_the_ellipsoid_by_a_grid() {
     };
     let expect = |ran: &Ran, height: f64, has_warning: bool| {
         assert_eq!(ran.code, Some(0), "{}", ran.stderr);
-        assert_eq!(
-            ran.stderr.contains("warning"),
-            has_warning,
-            "{}",
-            ran.stderr
-        );
+        let warnings = [
+            "heights keep their datum",
+            "they are used as heights above the ellipsoid",
+        ];
+        let is_warned = warnings.iter().any(|text| ran.stderr.contains(text));
+        assert_eq!(is_warned, has_warning, "{}", ran.stderr);
         let [low, high] = range_of_tile(&tiles);
-        assert!(low > height - 0.11 && high < height + 0.11, "{low} {high}");
+        // Steps of heights are a meter or two.
+        assert!(low > height - 2.5 && high < height + 2.5, "{low} {high}");
     };
     let system = &["--a-srs", "EPSG:4326+5773"];
     let missing = make(system);
