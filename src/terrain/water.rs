@@ -1,14 +1,15 @@
 //! Water on a surface: which faces are water, and which cells of a square.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use super::boxes::{Boxed, Boxes, Extent};
 use crate::data::{AT_ONCE, EdgeKind, Surface, WaterMask};
 use crate::error::Result;
 
-/// Returns the triangles of a surface that are water: those that shores enclose and that are at one
-/// height, and those that banks enclose and that have no vertices but those of banks and shores. An
-/// island is land if it has a vertex of another height.
+/// Returns the triangles of a surface that are water. Triangles that are connected without a shore or
+/// a bank between them are water if all of them are at one height, or if they reach a bank, have no
+/// vertices but those of banks, shores and lines of a cut, and do not reach the rim. So an island
+/// is land if it has a vertex of another height.
 ///
 /// `go_on` is called now and then, and ends the search by an error.
 ///
@@ -16,8 +17,8 @@ use crate::error::Result;
 /// Those of `go_on`.
 ///
 /// # Complexity
-/// Linear in the faces. In memory are the vertices of banks, and a number for each face that is
-/// water or level with it.
+/// Linear in the faces. In memory are the vertices of shores, and a number for each face that is
+/// water or land that is connected to a shore by such triangles.
 pub fn water_triangles(
     surface: &dyn Surface,
     go_on: &dyn Fn() -> Result<()>,
@@ -35,13 +36,16 @@ pub fn water_triangles(
         for face in faces.drain(..) {
             for (i, &kind) in face.edges.iter().enumerate() {
                 if is_shore(kind) {
-                    shores.add(surface, face.number, face.corners, i);
+                    shores.faces.push(face.number);
+                }
+                if is_shore(kind) || kind == EdgeKind::Clip {
+                    shores.add_vertices(surface, face.corners, i);
                 }
             }
         }
         from = to;
     }
-    let mut known = HashSet::new();
+    let mut known = HashMap::new();
     let mut water = Vec::new();
     for (number, &face) in shores.faces.iter().enumerate() {
         if number.is_multiple_of(AT_ONCE) {
@@ -61,14 +65,13 @@ fn is_shore(kind: EdgeKind) -> bool {
 struct Shores {
     /// The faces beside these edges.
     faces: Vec<u32>,
-    /// The positions of their vertices: a vertex that parts of a surface share has a number in each
-    /// part.
+    /// The positions of their vertices, and of those where water may be cut: a vertex that parts of a
+    /// surface share has a number in each part.
     vertices: HashSet<[u64; 3]>,
 }
 
 impl Shores {
-    fn add(&mut self, surface: &dyn Surface, face: u32, corners: [u32; 3], opposite: usize) {
-        self.faces.push(face);
+    fn add_vertices(&mut self, surface: &dyn Surface, corners: [u32; 3], opposite: usize) {
         for step in [1, 2] {
             let vertex = corners[(opposite + step) % 3];
             self.vertices.insert(key(surface.position(vertex)));
@@ -76,47 +79,63 @@ impl Shores {
     }
 
     /// Adds the triangles that are connected to a face without a shore or a bank between them, if
-    /// they are water.
+    /// they are water. `known` says of faces whether they are water.
     fn flood(
         &self,
         surface: &dyn Surface,
         face: u32,
-        known: &mut HashSet<u32>,
+        known: &mut HashMap<u32, bool>,
         water: &mut Vec<[[f64; 3]; 3]>,
     ) {
         let Some([[_, _, level], ..]) = surface.triangle(face) else {
             return;
         };
-        if !known.insert(face) {
+        if known.contains_key(&face) {
             return;
         }
         let before = water.len();
         let [mut is_level, mut is_of_shores, mut has_bank] = [true, true, false];
-        let mut left = vec![face];
-        while let Some(face) = left.pop() {
+        // Those up to `next` are done.
+        let mut connected = vec![face];
+        known.insert(face, true);
+        let mut next = 0;
+        while let Some(&face) = connected.get(next) {
+            next += 1;
             let Some(triangle) = surface.triangle(face) else {
                 continue;
             };
+            water.push(triangle);
             is_level &= triangle.iter().all(|p| p[2] == level);
             is_of_shores &= triangle.iter().all(|&p| self.vertices.contains(&key(p)));
-            if !is_level && !is_of_shores {
-                break;
-            }
-            water.push(triangle);
             for i in 0..3 {
                 let kind = surface.edge_kind(face, i);
                 has_bank |= kind == EdgeKind::Bank;
-                if !is_shore(kind)
-                    && let Some(next) = surface.neighbor(face, i)
-                    && known.insert(next)
-                {
-                    left.push(next);
+                if is_shore(kind) {
+                    continue;
                 }
+                let Some(beyond) = surface.neighbor(face, i) else {
+                    is_of_shores &= kind == EdgeKind::Clip;
+                    continue;
+                };
+                match known.get(&beyond) {
+                    None => {
+                        known.insert(beyond, true);
+                        connected.push(beyond);
+                    }
+                    Some(true) => {}
+                    // What is connected to land is land.
+                    Some(false) => [is_level, is_of_shores] = [false; 2],
+                }
+            }
+            // Land may be large: there is no need to know all of it.
+            if !is_level && !is_of_shores {
+                break;
             }
         }
         let is_water = is_level || (is_of_shores && has_bank);
         if !is_water {
             water.truncate(before);
+            known.extend(connected.into_iter().map(|face| (face, false)));
         }
     }
 }

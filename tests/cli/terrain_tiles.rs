@@ -258,12 +258,15 @@ fn the_bytes_do_not_depend_on_the_order_of_points_or_on_threads() {
     assert!(written[0] == written[1]);
 }
 
-/// A lake with an island, and a river beside it, on the ridge.
+/// A lake with an island and a narrow finger of land without points, and a river beside it, on the
+/// ridge.
 const WATER: [(&str, &str); 2] = [
     (
         "lake.geojson",
         r#"{"type":"Polygon","coordinates":[
-            [[7.002,46.002,405],[7.007,46.002,405],[7.007,46.006,405],[7.002,46.006,405],[7.002,46.002,405]],
+            [[7.002,46.002,405],[7.007,46.002,405],[7.007,46.006,405],
+            [7.0044,46.006,405],[7.0044,46.0057,405],[7.0044,46.0053,405],[7.0044,46.005,405],
+            [7.0041,46.005,405],[7.0041,46.0052,405],[7.0041,46.0056,405],[7.0041,46.006,405],[7.002,46.006,405],[7.002,46.002,405]],
             [[7.0037,46.0032,405],[7.0037,46.0047,405],[7.0052,46.0047,405],[7.0052,46.0032,405],[7.0037,46.0032,405]]]}"#,
     ),
     (
@@ -276,7 +279,9 @@ const WATER: [(&str, &str); 2] = [
 /// Returns true if the water of [`WATER`] is at a position.
 fn is_water([x, y]: [f64; 2]) -> bool {
     let is_in = |x0: f64, y0: f64, x1: f64, y1: f64| (x0..x1).contains(&x) && (y0..y1).contains(&y);
-    let lake = is_in(7.002, 46.002, 7.007, 46.006) && !is_in(7.0037, 46.0032, 7.0052, 46.0047);
+    let island = is_in(7.0037, 46.0032, 7.0052, 46.0047);
+    let finger = is_in(7.0041, 46.005, 7.0044, 46.006);
+    let lake = is_in(7.002, 46.002, 7.007, 46.006) && !island && !finger;
     let bank = 46.0071 + (x - 7.0021) / 0.007 * 0.0001;
     lake || (is_in(7.0021, 46.0, 7.0091, 47.0) && (bank..bank + 0.001).contains(&y))
 }
