@@ -31,7 +31,11 @@ pub(crate) fn name(term: &Term) -> String {
 /// Returns the parameter for a setting; `None` if no function has one.
 pub(crate) fn parameter(setting: Setting) -> Option<String> {
     let name = match setting {
-        Setting::CrossingReport | Setting::Parse => return None,
+        Setting::CrossingReport
+        | Setting::Parse
+        | Setting::Driver
+        | Setting::CreationOptions
+        | Setting::LayerOptions => return None,
         Setting::Class => "classes",
         Setting::Return => "returns",
         Setting::TargetCrs => "to_crs",

@@ -35,6 +35,8 @@ ELSEWHERE = {
     "parse": "the letters of LAStools; columns=(1, 2, 3) says the same",
     "crossing-report": "Tin.report['crossing_heights']",
     "dry-run": "breakline.Job.plan(...).tasks()",
+    # The wheel has no GDAL. Run files (`breakline.run`) have the words of the program.
+    **dict.fromkeys(("of", "driver", "co", "creation-options", "lco", "layer-options"), "breakline.run({'dem': {'of': ...}})"),
 }
 
 #: Verbs that return what has a method `write`, which takes `output` and `overwrite`.

@@ -51,10 +51,10 @@ pub(crate) use bytes::csv::csv_field;
 pub(crate) use bytes::field::no_such_field;
 pub use bytes::mapped;
 pub use bytes::output::{
-    Abandoned, Destination, Output, OutputSet, abandon_outputs, is_standard_output, is_stream,
-    probe, remove_abandoned, require_absent,
+    Abandoned, Destination, DriverOptions, Output, OutputSet, abandon_outputs, is_standard_output,
+    is_stream, probe, remove_abandoned, require_absent,
 };
-pub(crate) use bytes::output::{FolderKind, OutputFolder, Temporary, followed};
+pub(crate) use bytes::output::{FolderKind, OutputDriver, OutputFolder, Temporary, followed};
 pub use bytes::watch::Watch;
 pub(crate) use codec::prj;
 pub use codec::{

@@ -40,7 +40,11 @@ fn what_cannot_be_done_names_what_can() {
             "tin -te 0 0 1 1 a.xyz -o t.ply",
             "hint: --bounds XMIN,YMIN,XMAX,YMAX clips the surface",
         ),
-        ("dem -of HFA a.xyz -o d.img", "hint: leave -of out"),
+        (
+            "dem -of AAIGrid a.xyz -o d.tif",
+            "hint: leave out --of, or give the output the extension .asc",
+        ),
+        ("tin -of PLY a.xyz -o t.obj", "hint: leave -of out"),
         (
             "dem -co COMPRESS=LZW a.xyz -o d.tif",
             "hint: leave it out: a GeoTIFF is tiled",
@@ -71,8 +75,8 @@ fn what_cannot_be_done_names_what_can() {
             "hint: switches of Triangle are for `breakline triangulate`",
         ),
         (
-            "color-relief d.tif -of JPEG -o c.tif",
-            "-of JPEG: the extension",
+            "color-relief a.xyz -of PNG -o c.tif",
+            "--of PNG: the extension of the output is that of another format, .tif",
         ),
         ("a.xyz", "hint: `breakline info a.xyz` shows what is in it"),
         (
@@ -88,4 +92,31 @@ fn what_cannot_be_done_names_what_can() {
         run(line).fails(2, &["error: ", hint]);
     }
     assert_eq!(files_of(folder.path()), before);
+}
+
+#[test]
+#[cfg(not(feature = "gdal"))]
+fn what_needs_gdal_says_so() {
+    let folder = folder_with(&[("a.xyz", SLOPE)]);
+    let run = |line: &str| run_in(&folder, &line.split(' ').collect::<Vec<_>>());
+    for line in [
+        "dem -of HFA a.xyz -o d.img",
+        "dem -of HFA -co COMPRESSED=YES a.xyz -o d.tif",
+        "contour a.xyz -o PG:dbname=gis:lines",
+        "contour a.xyz -co A=B -o c.kml",
+        "tin a.xyz --breaklines /vsizip/a.zip/b.shp:Z -o t.ply",
+        "tin a.xyz --breaklines PG:dbname=gis:lines -o t.ply",
+        "hillshade /vsicurl/http://127.0.0.1/a.tif -o s.tif",
+        "info NETCDF:a.nc:z",
+    ] {
+        let said = [
+            "GDAL, without which this program was built",
+            "hint: build with `cargo build --release --features gdal`",
+        ];
+        run(line).fails(1, &said);
+    }
+    let run = run("tin a.xyz --breaklines PG:dbname=gis,password=s3cret -o t.ply");
+    run.fails(1, &["password=***"]);
+    assert!(!run.stderr.contains("s3cret"));
+    assert_eq!(files_of(folder.path()), ["a.xyz"]);
 }

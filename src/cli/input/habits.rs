@@ -1,6 +1,7 @@
 //! Translation of what users of GDAL and LAStools type by habit; `docs/from-gdal.md` has the table
 //! for them.
 
+use std::borrow::Cow;
 use std::collections::VecDeque;
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
@@ -11,6 +12,7 @@ use super::args::{Cli, expand_switches, finite};
 use super::condition;
 use crate::error::{Error, Result};
 use crate::io::formats::{self, Product};
+use crate::io::gdal;
 use crate::io::profiles;
 
 /// Words that are typed by habit, and what they mean.
@@ -38,7 +40,7 @@ enum Meaning {
     Input(Option<&'static str>),
     /// The name of a format, which must agree with the extension of the output.
     Format,
-    /// A creation option of GeoTIFF, `NAME=VALUE`.
+    /// A creation option, `NAME=VALUE`.
     Creation,
     /// The condition for the records of the layer that was named just before.
     Condition,
@@ -63,6 +65,21 @@ const RASTERS: &[&str] = &[
     "tri",
     "tpi",
     "compare",
+];
+/// The verbs whose outputs drivers of GDAL may write.
+const DRIVEN: &[&str] = &[
+    "dem",
+    "hillshade",
+    "color-relief",
+    "slope",
+    "aspect",
+    "curvature",
+    "roughness",
+    "tri",
+    "tpi",
+    "compare",
+    "contour",
+    "drape",
 ];
 const CONTOUR: &[&str] = &["contour"];
 const SHADE: &[&str] = &["hillshade"];
@@ -110,8 +127,12 @@ const HABITS: &[Habit] = &[
     Habit { typed: &["--crs", "-crs"], verbs: &[], meaning: Refused("--a-srs states the system of the input, --t-srs reprojects to another") },
     Habit { typed: &["-odir", "-odix", "-otif", "-opng", "-oasc", "-obil", "-olaz", "-olas"], verbs: &[],
         meaning: Refused("-o FILE names the output; its extension selects the format") },
+    Habit { typed: &["-of", "-f"], verbs: DRIVEN, meaning: Same("--of") },
+    Habit { typed: &["-co", "--co"], verbs: DRIVEN, meaning: Creation },
+    Habit { typed: &["-lco"], verbs: DRIVEN, meaning: Same("--lco") },
     Habit { typed: &["-of", "--of", "-f"], verbs: &[], meaning: Format },
-    Habit { typed: &["-co", "--co"], verbs: &[], meaning: Creation },
+    Habit { typed: &["-co", "--co", "-lco", "--lco"], verbs: &[],
+        meaning: Refused("creation options are for rasters and for layers of lines") },
     Habit { typed: &["-overwrite"], verbs: &[], meaning: Same("--overwrite") },
     Habit { typed: &["-quiet"], verbs: &[], meaning: Same("--quiet") },
     Habit { typed: &["-cutline", "--cutline"], verbs: &[], meaning: Same("--boundary") },
@@ -213,30 +234,13 @@ const OF_OTHERS: &[(&str, &str)] = &[
     ),
 ];
 
-/// Creation options that describe how a GeoTIFF is always written.
-const AS_WRITTEN: &[&str] = &[
-    "TILED=YES",
-    "COMPRESS=DEFLATE",
-    "PREDICTOR=3",
-    "BLOCKXSIZE=256",
-    "BLOCKYSIZE=256",
-    "SPARSE_OK=TRUE",
-    "SPARSE_OK=YES",
-    "BIGTIFF=IF_NEEDED",
-    "BIGTIFF=IF_SAFER",
-    "NUM_THREADS=ALL_CPUS",
-    "PREDICTOR=YES",
-    "OVERVIEWS=AUTO",
-    "OVERVIEW_RESAMPLING=AVERAGE",
-];
-
 /// Translates habits to options of this program where the meaning is certain; leaves all other
 /// words as they are.
 ///
 /// # Errors
 /// If a habit has no equivalent; the hint says what to type instead.
 pub(crate) fn understood(args: impl IntoIterator<Item = OsString>) -> Result<Vec<OsString>> {
-    let mut args: Vec<OsString> = args.into_iter().collect();
+    let mut args: Vec<OsString> = args.into_iter().map(without_secrets).collect();
     let Some(at) = verb_position(&args) else {
         return Ok(args);
     };
@@ -258,6 +262,21 @@ pub(crate) fn understood(args: impl IntoIterator<Item = OsString>) -> Result<Vec
         .try_for_each(|format| confirm(format, &targets))?;
     args.extend(words);
     Ok(args)
+}
+
+/// Returns a word without the passwords in the name of a data set, which may follow an option.
+fn without_secrets(word: OsString) -> OsString {
+    let Some(text) = word.to_str() else {
+        return word;
+    };
+    let (option, value) = match text.split_once('=') {
+        Some((option, value)) if option.starts_with("--") => (&text[..=option.len()], value),
+        _ => ("", text),
+    };
+    match gdal::without_secrets(value) {
+        Cow::Owned(hidden) => format!("{option}{hidden}").into(),
+        Cow::Borrowed(_) => word,
+    }
 }
 
 /// Returns the position of the verb, if there is one.
@@ -374,13 +393,14 @@ impl Translation<'_> {
             }
             Creation => {
                 let value = self.value();
-                match value.eq_ignore_ascii_case("OVERVIEWS=NONE") {
+                let is_overviews = value.eq_ignore_ascii_case("OVERVIEWS=NONE");
+                match is_overviews && RASTERS.contains(&self.verb) {
                     // Colors never have overviews.
                     true if self.verb == "color-relief" => {}
                     true => self
                         .ours
                         .extend(["--overviews", "none"].map(OsString::from)),
-                    false => require_as_written(name, &value)?,
+                    false => self.ours.extend(["--co".into(), value.into()]),
                 }
             }
             Condition => {
@@ -431,20 +451,6 @@ impl Translation<'_> {
             .map(|word| word.to_string_lossy().into_owned())
             .collect()
     }
-}
-
-/// Returns an error unless a creation option describes what a GeoTIFF is anyway.
-fn require_as_written(name: &str, value: &str) -> Result<()> {
-    if AS_WRITTEN
-        .iter()
-        .any(|known| known.eq_ignore_ascii_case(value))
-    {
-        return Ok(());
-    }
-    Err(Error::usage(format!("{name} {value}: there are no creation options")).cure(
-        "leave it out: a GeoTIFF is tiled, with overviews (unless `--overviews none`), DEFLATE with predictor 3, \
-         BigTIFF if necessary; `gdal_translate -co` converts it",
-    ))
 }
 
 /// Returns the words with `--ramp` before a text file that follows a raster: `gdaldem color-relief`
@@ -544,7 +550,9 @@ fn with_output(verb: &str, mut words: Vec<OsString>) -> Result<(Vec<OsString>, V
             .unwrap_or_default()
             .to_string_lossy()
             .to_ascii_lowercase();
-        if written(verb).contains(&extension.as_str()) {
+        // A driver writes any name.
+        let is_driven = words.iter().any(|word| word == "--of") && !path.exists();
+        if is_driven || written(verb).contains(&extension.as_str()) {
             if path.exists() && !words.iter().any(|word| word == "--overwrite") {
                 let name = path.display();
                 return Err(Error::usage("no output is named").cure(format!(
@@ -648,7 +656,15 @@ mod tests {
             ),
             (
                 "b dem -of gtiff -co TILED=YES -a_srs EPSG:25832 -overwrite a.laz -o b.TIF",
-                "b dem --a-srs EPSG:25832 --overwrite a.laz -o b.TIF",
+                "b dem --of gtiff --co TILED=YES --a-srs EPSG:25832 --overwrite a.laz -o b.TIF",
+            ),
+            (
+                "b contour -f KML -lco A=B -co OVERVIEWS=NONE a.tif b.kml",
+                "b contour --of KML --lco A=B --co OVERVIEWS=NONE a.tif -o b.kml",
+            ),
+            (
+                "b hillshade -co OVERVIEWS=NONE a.tif -o b.tif",
+                "b hillshade --overviews none a.tif -o b.tif",
             ),
             (
                 "b dem a.laz --s-srs EPSG:1 b.tif",
@@ -724,19 +740,14 @@ mod tests {
                 "--bounds",
             ),
             (
-                "b dem -of AAIGrid a.laz -o b.tif",
-                "-of AAIGrid: the extension",
+                "b points -of LAZ a.laz -o b.las",
+                "-of LAZ: the extension",
                 "-o dem.tif",
             ),
             (
-                "b dem -of PNG a.laz -o b.tif",
-                "-of PNG: the extension",
-                "-o dem.tif",
-            ),
-            (
-                "b dem -co COMPRESS=LZW a.laz -o b.tif",
-                "-co COMPRESS=LZW: there are no creation options",
-                "gdal_translate",
+                "b tin -co COMPRESS=LZW a.laz -o b.ply",
+                "-co is not an option of `breakline tin`",
+                "rasters and for layers",
             ),
             (
                 "b a.laz -o b.tif",

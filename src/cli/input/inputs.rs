@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::cli::report::console::Console;
 use crate::error::{Error, Result};
+use crate::io::gdal;
 use crate::io::layer::{self, Spec};
 use crate::run::STDIN;
 use crate::run::targets::{file_of, identity};
@@ -68,7 +69,7 @@ pub(crate) fn expand_layers(typed: &[PathBuf]) -> Result<Vec<PathBuf>> {
     let mut found = Vec::new();
     typed
         .iter()
-        .try_for_each(|path| match (file_of(path), glob_of(path)) {
+        .try_for_each(|path| match (named_file(path), glob_of(path)) {
             (None, Some((pattern, names))) => expand_glob(pattern, names, &mut found),
             (None, None) => Err(no_such_file(path)),
             (Some(_), _) => {
@@ -84,10 +85,16 @@ pub(crate) fn expand_layers(typed: &[PathBuf]) -> Result<Vec<PathBuf>> {
 /// # Errors
 /// If it does not.
 pub(crate) fn require<'a>(paths: impl IntoIterator<Item = &'a PathBuf>) -> Result<()> {
-    match paths.into_iter().find(|path| file_of(path).is_none()) {
+    match paths.into_iter().find(|path| named_file(path).is_none()) {
         Some(path) => Err(no_such_file(path)),
         None => Ok(()),
     }
+}
+
+/// Returns the file that an input names, or the data set that only GDAL can open: whether that is
+/// there is known once it is opened.
+fn named_file(path: &Path) -> Option<&Path> {
+    file_of(path).or_else(|| gdal::is_name(path).then_some(path))
 }
 
 #[cold]
@@ -139,6 +146,9 @@ fn read_list(list: &Path, found: &mut Vec<PathBuf>) -> Result<()> {
 /// Returns the input that a file names which is in a folder. In the name of the folder, nothing
 /// stands for other names.
 pub(crate) fn in_folder(folder: &Path, input: &str) -> PathBuf {
+    if gdal::is_name(input) {
+        return gdal::without_secrets(input).into_owned().into();
+    }
     let path = folder.join(input);
     match folder.to_str() {
         Some(text) if glob_of(folder).is_some() && file_of(&path).is_none() => {
@@ -149,7 +159,7 @@ pub(crate) fn in_folder(folder: &Path, input: &str) -> PathBuf {
 }
 
 fn expand_one(path: &Path, found: &mut Vec<PathBuf>) -> Result<()> {
-    if path.as_os_str() == STDIN || file_of(path).is_some() {
+    if path.as_os_str() == STDIN || named_file(path).is_some() {
         // A folder with an extension may be a data set of GDAL, such as `.gdb`.
         if path.is_dir() && path.extension().is_none() {
             return Err(folder(path));

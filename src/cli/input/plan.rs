@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use super::args::{
-    ClassRange, CrossingZArg, DuplicatesArg, EdgeLength, FrameArgs, LineArgs, OnCrossingArg,
-    OutputArgs, ReturnRange, SurfaceArgs, SystemArgs,
+    ClassRange, CrossingZArg, DriverArgs, DuplicatesArg, EdgeLength, FrameArgs, LineArgs,
+    OnCrossingArg, OutputArgs, ReturnRange, SurfaceArgs, SystemArgs,
 };
 use super::inputs;
 use crate::cli::report::console::Console;
@@ -134,6 +134,14 @@ impl SurfacePlan {
             files: args.output.clone(),
             existing,
             ..self.targets.clone()
+        }
+    }
+
+    /// Like [`targets`](Self::targets), but a driver of GDAL may write the outputs.
+    pub(crate) fn driven_targets(&self, args: &OutputArgs, driver: &DriverArgs) -> Targets {
+        Targets {
+            driver: driver.options(),
+            ..self.targets(args)
         }
     }
 }

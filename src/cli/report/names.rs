@@ -22,6 +22,9 @@ pub(crate) fn option(setting: Setting) -> String {
         Setting::TargetCrs => "t-srs",
         Setting::Extent => "te",
         Setting::InSpace => "3d",
+        Setting::Driver => "of",
+        Setting::CreationOptions => "co",
+        Setting::LayerOptions => "lco",
         other => other.name(),
     };
     format!("--{name}")

@@ -2,13 +2,14 @@ use super::pair;
 use super::product::{self, Answer, Outcome, Product, ProductPlan};
 use crate::cli::Exit;
 use crate::cli::input::args::CompareArgs;
-use crate::cli::input::outputs::{Format, Target, formats_of};
+use crate::cli::input::outputs::{Format, Formats, Target, formats_of};
 use crate::cli::input::plan::{SurfacePlan, frame};
 use crate::cli::report::comparison;
 use crate::cli::report::console::Console;
 use crate::error::{Error, Result};
 use crate::io::OutputSet;
-use crate::io::formats::Product as Formats;
+use crate::io::formats::Product as Contents;
+use crate::io::gdal::DriverContent;
 use crate::run::{self, AreaOptions, CompareOptions, Context, SurfaceProduct};
 use crate::terrain::Method;
 
@@ -63,8 +64,14 @@ impl<'a> Comparison<'a> {
         }
         let surfaces = SurfacePlan::resolve_each(&args.surface, given, console)?;
         let output = pair::output(&args.output, args.overwrite);
+        let driver = args.driver.options();
+        let formats = Formats {
+            all: formats().into(),
+            driver: Some(&driver),
+            of_gdal: Some((DriverContent::Heights, Written::Cells)),
+        };
         let aligned_to = args.frame.align_to.clone();
-        let (plan, targets) = ProductPlan::resolve(surfaces, aligned_to, &output, &formats())?;
+        let (plan, targets) = ProductPlan::resolve(surfaces, aligned_to, &output, formats)?;
         let named = |i: usize| args.surface.inputs.get(i).cloned().unwrap_or_default();
         let options = CompareOptions {
             frame: args.overviews.of(frame(&args.frame)?),
@@ -122,8 +129,8 @@ impl Product for Comparison<'_> {
 
 /// Returns the formats of rasters and of polygons.
 fn formats() -> Vec<Format<Written>> {
-    let mut formats = formats_of(Formats::Heights, |_| Written::Cells);
-    formats.extend(formats_of(Formats::Lines, |_| Written::Areas));
+    let mut formats = formats_of(Contents::Heights, |_| Written::Cells);
+    formats.extend(formats_of(Contents::Lines, |_| Written::Areas));
     formats
 }
 

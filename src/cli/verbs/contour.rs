@@ -31,7 +31,7 @@ pub(super) fn asked(args: &ContourArgs, console: &Console) -> Result<Asked> {
     };
     let targets = Targets {
         labels: map.labels_output.clone(),
-        ..plan.targets(&args.output)
+        ..plan.driven_targets(&args.output, &args.driver)
     };
     Ok(Asked {
         request: WriteRequest::new(plan.request, options),

@@ -12,7 +12,7 @@ pub(super) fn asked(args: &DemArgs, console: &Console) -> Result<Asked> {
         frame: args.overviews.of(frame(&args.cells.frame)?),
         method: args.cells.method.into(),
     };
-    let targets = plan.targets(&args.output);
+    let targets = plan.driven_targets(&args.output, &args.driver);
     Ok(Asked {
         request: WriteRequest::new(plan.request, options),
         targets,

@@ -19,7 +19,7 @@ pub(super) fn asked(args: &HillshadeArgs, console: &Console) -> Result<Asked> {
         method: args.cells.method.into(),
         light,
     };
-    let targets = plan.targets(&args.output);
+    let targets = plan.driven_targets(&args.output, &args.driver);
     Ok(Asked {
         request: WriteRequest::new(plan.request, options),
         targets,

@@ -70,7 +70,7 @@ pub(crate) fn run(args: &PointsArgs, console: &Console) -> Result<Exit> {
     }
     let outputs = outputs::resolve(
         &args.output,
-        &outputs::formats_of(Product::Points, |_| ()),
+        &outputs::formats_of(Product::Points, |_| ())[..],
         &all,
     )?;
     let [target] = outputs.targets.as_slice() else {

@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use crate::cli::Exit;
 use crate::cli::input::args::OutputArgs;
-use crate::cli::input::outputs::{self, Format, Target};
+use crate::cli::input::outputs::{self, Formats, Target};
 use crate::cli::input::plan::SurfacePlan;
 use crate::cli::report::console::Console;
 use crate::cli::report::escape;
@@ -60,11 +60,11 @@ impl ProductPlan {
     ///
     /// # Errors
     /// Those of [`outputs::resolve`].
-    pub(super) fn resolve<F: Copy>(
+    pub(super) fn resolve<'f, F: Copy + 'static>(
         surfaces: Vec<SurfacePlan>,
         others: impl IntoIterator<Item = PathBuf>,
         output: &OutputArgs,
-        formats: &[Format<F>],
+        formats: impl Into<Formats<'f, F>>,
     ) -> Result<(Self, Vec<Target<F>>)> {
         let of_surfaces = surfaces
             .iter()

@@ -63,7 +63,7 @@ fn asked(
         method: args.cells.method.into(),
         z_factor,
     };
-    let targets = plan.targets(&args.output);
+    let targets = plan.driven_targets(&args.output, &args.driver);
     Ok(Asked {
         request: WriteRequest::new(plan.request, options),
         targets,

@@ -14,7 +14,7 @@ pub(super) fn asked(args: &ColorReliefArgs, console: &Console) -> Result<Asked> 
         method: args.cells.method.into(),
         ..ColorReliefOptions::new(color_ramp(&args.ramp)?)
     };
-    let mut targets = plan.targets(&args.output);
+    let mut targets = plan.driven_targets(&args.output, &args.driver);
     targets
         .also_read
         .extend(Some(&args.ramp).filter(|ramp| ramp.is_file()).cloned());

@@ -23,23 +23,15 @@ use crate::terrain::Method;
 
 /// The formats of points that values are added to.
 const FORMATS: &[Format<()>] = &[
-    format("csv", &[]),
-    format("txt", &[]),
-    format("xyz", &[]),
-    format("las", &[]),
-    format("laz", &[]),
-    format("shp", &["shx", "dbf", "prj", "cpg"]),
-    format("geojson", &[]),
-    format("json", &[]),
+    Format::named("csv", &[]),
+    Format::named("txt", &[]),
+    Format::named("xyz", &[]),
+    Format::named("las", &[]),
+    Format::named("laz", &[]),
+    Format::named("shp", &["shx", "dbf", "prj", "cpg"]),
+    Format::named("geojson", &[]),
+    Format::named("json", &[]),
 ];
-
-const fn format(extension: &'static str, companions: &'static [&'static str]) -> Format<()> {
-    Format {
-        extension,
-        kind: (),
-        companions,
-    }
-}
 
 /// Adds heights and slopes of a surface to points.
 pub(crate) fn run(args: &SampleArgs, console: &Console) -> Result<Exit> {

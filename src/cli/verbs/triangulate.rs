@@ -52,7 +52,7 @@ pub(crate) fn run(args: &TriangulateArgs, console: &Console) -> Result<Exit> {
         .extension()
         .is_some_and(|e| e.eq_ignore_ascii_case("poly"));
     let formats = formats(is_poly);
-    let outputs = outputs::resolve(&args.output, &formats, std::slice::from_ref(path))?;
+    let outputs = outputs::resolve(&args.output, &formats[..], std::slice::from_ref(path))?;
     let product = run::triangulate(path, &options(args), &console.context())?;
     if product.report.triangles_built == 0
         && let Some(mesh) = outputs

@@ -44,7 +44,7 @@ pub(super) fn run(args: &TriangulateArgs, console: &Console) -> Result<Exit> {
         .into_iter()
         .flatten()
         .collect();
-    let outputs = outputs::resolve(&args.output, &formats, &read)?;
+    let outputs = outputs::resolve(&args.output, &formats[..], &read)?;
     let (solids, others): (Vec<_>, Vec<_>) = outputs
         .targets
         .iter()

@@ -251,8 +251,10 @@ pub struct Format {
     /// Extensions of files that are read along with a file of this format, in any case. As in
     /// `beside`, one that starts with the format's own extension is appended to the file name.
     pub read_along: &'static [&'static str],
-    /// GDAL's names for the format, if breakline writes it.
+    /// GDAL's names for the format, if breakline or a driver of GDAL writes it.
     pub gdal_names: &'static [&'static str],
+    /// Creation options of GDAL's drivers that say what breakline writes anyway.
+    pub(crate) as_written: &'static [&'static str],
     pub(crate) reader: FormatReader,
     pub(crate) writers: Writers,
     /// What to do with such a file where points are expected.

@@ -205,7 +205,9 @@ impl FormatReader {
 
 /// Returns the formats that this crate reads or writes, one per line, for the help of the program.
 pub fn help() -> String {
-    let mut text = String::from("Formats, by extension (more are read with the feature `gdal`):\n");
+    let mut text = String::from(
+        "Formats, by extension (more are read and written with the feature `gdal`):\n",
+    );
     for format in FORMATS.iter().filter(|format| format.is_read()) {
         let extensions: Vec<String> = format
             .extensions
@@ -232,10 +234,12 @@ pub fn markdown() -> String {
             .iter()
             .map(|extension| format!("`.{extension}`"))
             .collect();
+        let by_gdal = matches!(format.reader, FormatReader::Gdal) && !format.gdal_names.is_empty();
         let written: Vec<_> = Product::ALL
             .into_iter()
             .filter(|&product| format.writes(product))
             .map(Product::name)
+            .chain(by_gdal.then_some(format.reader.name()))
             .collect();
         let holds: Vec<_> = format.holds.iter().map(|holding| holding.name()).collect();
         let cells = [

@@ -56,6 +56,7 @@ const ROW: Format = Format {
     parts: &[],
     read_along: &[],
     gdal_names: &[],
+    as_written: &[],
     reader: FormatReader::Gdal,
     writers: NOT_WRITTEN,
     cure: with_gdal,
@@ -432,6 +433,7 @@ pub static FORMATS: &[Format] = &[
         holds: &[Holding::Raster, Holding::Crs, Holding::Compression],
         read_along: &["tfw", "tifw", "tiffw", "wld"],
         gdal_names: &["GTiff", "COG"],
+        as_written: geotiff::AS_WRITTEN,
         reader: FormatReader::Raster(|path| geotiff::open(path)),
         writers: Writers {
             heights: Some(|target, source| {
@@ -703,35 +705,50 @@ pub static FORMATS: &[Format] = &[
         &["vrt"],
         &[Magic::At(0, b"<VRTDataset")],
     ),
-    raster(
-        "Erdas Imagine",
-        "an Erdas Imagine file",
-        &["img"],
-        &[Magic::At(0, b"EHFA_HEADER_TAG")],
-    ),
-    raster(
-        "SRTM height file (HGT)",
-        "an SRTM height file",
-        &["hgt"],
-        &[],
-    ),
-    raster("USGS DEM", "a USGS DEM", &["dem"], &[]),
-    raster(
-        "DTED",
-        "a DTED file",
-        &["dt0", "dt1", "dt2"],
-        &[
-            Magic::At(0, b"UHL1"),
-            Magic::At(0, b"HDR1"),
-            Magic::At(80, b"UHL1"),
-        ],
-    ),
-    raster(
-        "raw raster (BIL, FLT)",
-        "a raw raster",
-        &["bil", "flt"],
-        &[],
-    ),
+    Format {
+        gdal_names: &["HFA"],
+        ..raster(
+            "Erdas Imagine",
+            "an Erdas Imagine file",
+            &["img"],
+            &[Magic::At(0, b"EHFA_HEADER_TAG")],
+        )
+    },
+    Format {
+        gdal_names: &["SRTMHGT"],
+        ..raster(
+            "SRTM height file (HGT)",
+            "an SRTM height file",
+            &["hgt"],
+            &[],
+        )
+    },
+    Format {
+        gdal_names: &["USGSDEM"],
+        ..raster("USGS DEM", "a USGS DEM", &["dem"], &[])
+    },
+    Format {
+        gdal_names: &["DTED"],
+        ..raster(
+            "DTED",
+            "a DTED file",
+            &["dt0", "dt1", "dt2"],
+            &[
+                Magic::At(0, b"UHL1"),
+                Magic::At(0, b"HDR1"),
+                Magic::At(80, b"UHL1"),
+            ],
+        )
+    },
+    Format {
+        gdal_names: &["EHdr"],
+        ..raster(
+            "raw raster (BIL, FLT)",
+            "a raw raster",
+            &["bil", "flt"],
+            &[],
+        )
+    },
     raster(
         "Surfer grid",
         "a Surfer grid",
@@ -744,6 +761,7 @@ pub static FORMATS: &[Format] = &[
     ),
     Format {
         known_by: KnownBy::NameAndBytes,
+        gdal_names: &["netCDF"],
         ..raster(
             "NetCDF 4 or HDF",
             "an HDF5 or NetCDF 4 file",
@@ -764,13 +782,19 @@ pub static FORMATS: &[Format] = &[
         &[],
         &[Magic::At(4, b"jP  "), Magic::At(0, b"\xff\x4f\xff\x51")],
     ),
-    vector(
-        "XML (GML, KML)",
-        "an XML file (GML, KML)",
-        &["kml", "gml"],
-        &[Magic::At(0, b"<?xml")],
-    ),
-    vector("file geodatabase", "a file geodatabase", &["gdb"], &[]),
+    Format {
+        gdal_names: &["LIBKML", "KML", "GML"],
+        ..vector(
+            "XML (GML, KML)",
+            "an XML file (GML, KML)",
+            &["kml", "gml"],
+            &[Magic::At(0, b"<?xml")],
+        )
+    },
+    Format {
+        gdal_names: &["OpenFileGDB"],
+        ..vector("file geodatabase", "a file geodatabase", &["gdb"], &[])
+    },
     vector("DWG", "a DWG drawing", &[], &[Magic::At(0, b"AC10")]),
     Format {
         name: "E57",

@@ -8,6 +8,7 @@ use crate::data::ContourLine;
 use crate::error::{Error, Result};
 use crate::io::bytes::output::Destination;
 pub use crate::io::codec::contour_summary::ContourSummary;
+use crate::io::codec::gdal;
 use crate::io::formats::{self, Holding, Product, Writers};
 pub(crate) use crate::io::options::map_sheet::MapSheet;
 
@@ -18,6 +19,9 @@ pub(crate) use crate::io::options::map_sheet::MapSheet;
 /// If the file would be too large; the message states the minimum size.
 pub fn check_size<'a>(target: impl Into<Destination<'a>>, vertices: u64) -> Result<()> {
     let target = target.into();
+    if target.driver().is_some() {
+        return Ok(());
+    }
     let check_size =
         formats::of_name(&target.format_path()).and_then(|format| format.writers.check_size);
     check_size.map_or(Ok(()), |check_size| {
@@ -37,7 +41,7 @@ pub(crate) fn takes_labels(path: &Path) -> bool {
 /// Names the file, and formats that do.
 pub(crate) fn require_areas<'a>(target: impl Into<Destination<'a>>) -> Result<()> {
     let target = target.into();
-    match formats::of_name(&target.format_path()) {
+    match formats::of_name(&target.format_path()).filter(|_| target.driver().is_none()) {
         Some(format) if !format.can_hold(Holding::Polygons) => {
             let error = format!("{} has no areas, only their outlines", format.noun);
             Err(Error::usage(error)
@@ -54,7 +58,7 @@ pub(crate) fn require_areas<'a>(target: impl Into<Destination<'a>>) -> Result<()
 /// # Errors
 /// Those of [`layer::write_lines`].
 pub(crate) fn write_map(target: Destination, sheet: &MapSheet) -> Result<Vec<String>> {
-    let format = formats::of_name(&target.format_path());
+    let format = formats::of_name(&target.format_path()).filter(|_| target.driver().is_none());
     match (
         format.and_then(|format| format.writers.map),
         sheet.shapes.or(sheet.labels),
@@ -66,7 +70,7 @@ pub(crate) fn write_map(target: Destination, sheet: &MapSheet) -> Result<Vec<Str
 }
 
 /// Writes contours in the format that the extension of `target` names, see
-/// [`FORMATS`](formats::FORMATS).
+/// [`FORMATS`](formats::FORMATS), or by its driver of GDAL.
 ///
 /// # Errors
 /// If contours cannot be written in a format with this extension, or a file cannot be written.
@@ -76,6 +80,9 @@ pub fn write<'a>(
     crs: Option<&Crs>,
 ) -> Result<ContourSummary> {
     let target = target.into();
+    if let Some(driver) = target.driver() {
+        return gdal::write_contours(target, driver, lines, crs);
+    }
     match formats::of_name(&target.format_path()).map(|format| format.writers) {
         Some(Writers {
             contours: Some(write),

@@ -6,7 +6,7 @@ use crate::data::Layer;
 use crate::error::{Error, Feature, Result, wording};
 use crate::io::bytes::output::Destination;
 use crate::io::bytes::watch::{Watch, unwatched};
-use crate::io::codec::gpkg;
+use crate::io::codec::{gdal, gpkg};
 use crate::io::formats::{self, FormatReader, Product, Writers};
 pub use crate::io::options::condition::{BoundCondition, Condition};
 use crate::io::options::cut::OnDamage;
@@ -117,7 +117,8 @@ pub(super) fn without_condition(text: &str) -> (&str, Option<&str>) {
     let splits = lower.match_indices(WHERE);
     let mut splits = splits.map(|(at, _)| (&text[..at], Some(&text[at + WHERE.len()..])));
     let first = splits.clone().next();
-    let of_file = splits.find(|(name, _)| split(name).0.exists());
+    let is_there = |path: &Path| path.exists() || gdal::is_name(path);
+    let of_file = splits.find(|(name, _)| is_there(split(name).0));
     of_file.or(first).unwrap_or((text, None))
 }
 
@@ -126,6 +127,9 @@ pub(super) fn split(text: &str) -> (&Path, Option<&str>) {
     let whole = (Path::new(text), None);
     if whole.0.exists() {
         return whole;
+    }
+    if gdal::is_name(text) {
+        return gdal::split(text);
     }
     let name_start = text.rfind(['/', '\\']).map_or(0, |at| at + 1);
     // A single letter before a colon is a drive.
@@ -195,6 +199,9 @@ pub fn read_with(path: &Path, options: &Options, watch: Watch) -> Result<Layer> 
 /// a file cannot be written.
 pub fn write_lines<'a>(target: impl Into<Destination<'a>>, layer: &Layer) -> Result<Vec<String>> {
     let target = target.into();
+    if let Some(driver) = target.driver() {
+        return gdal::write_layer(target, driver, layer);
+    }
     match formats::of_name(&target.format_path()).map(|format| format.writers) {
         Some(Writers {
             lines: Some(write), ..

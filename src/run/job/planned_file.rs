@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::crs::Crs;
 use crate::data::{Bounds, PointBatch};
 use crate::error::{Command, Error, Result, Setting, wording};
-use crate::io::{formats, layer};
+use crate::io::{formats, gdal, layer};
 use crate::run::context::units::neat;
 use crate::run::context::{Context, Journal, Size, Stage};
 use crate::run::products::tin::TinRequest;
@@ -313,6 +313,13 @@ pub(super) fn require_folder(path: &Path, request: &TinRequest) -> Result<()> {
 /// Returns the name of a file without that of a layer, which may follow, and what the system knows
 /// of the file.
 fn found(path: &Path) -> Result<(&Path, Metadata)> {
+    if gdal::is_name(path) {
+        return Err(
+            Error::usage("a job notices when its inputs change, and this one is no file")
+                .in_file(path)
+                .cure("copy it to a file"),
+        );
+    }
     match std::fs::metadata(path) {
         Ok(about) => Ok((path, about)),
         Err(error) => {

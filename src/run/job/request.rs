@@ -128,6 +128,7 @@ pub(super) fn add_targets(options: &mut Options, targets: &Targets, tiles: &Tile
         replaced,
         labels,
         also_read: _,
+        driver,
     } = targets;
     let mut listed = Listed(std::mem::take(options));
     listed.put(OUTPUT, files);
@@ -137,6 +138,9 @@ pub(super) fn add_targets(options: &mut Options, targets: &Targets, tiles: &Tile
     // Jobs that began before this option keep their lists.
     if labels.is_some() {
         listed.put(LABELS, labels);
+    }
+    if !driver.is_default() {
+        listed.add(&[Setting::Driver], driver);
     }
     listed.add(&[Setting::SkipBad], &tiles.bad);
     *options = listed.0;

@@ -8,11 +8,12 @@ use crate::data::{self, BlockSource, Colors, Frame, Grid, Rgba, Surface, Window}
 use crate::error::{Error, Result, Setting, wording};
 use crate::io::formats::{self, FormatReader, WriteHeights};
 use crate::io::geotiff::{self, CellFormat, Overviews, RasterSummary, WriteOptions};
-use crate::io::{Destination, png};
+use crate::io::{Destination, OutputDriver, gdal, png};
 use crate::run::context::notice::Notice;
 use crate::run::context::units::Units;
 use crate::run::context::watched::Watched;
 use crate::run::context::{Context, Journal, Size, Stage};
+use crate::run::lines::layers;
 use crate::terrain::{
     Dem, FaceSlopes, Gradient, GradientMap, GradientSource, Hillshade, Light, Method, Quantity,
     QuantityMap, Shading,
@@ -546,11 +547,14 @@ impl CellProduct<'_> {
 
     /// Computes all cells, on all cores, and writes them: heights as 32-bit floats, shades as
     /// bytes, colors as four bytes. The format is GeoTIFF, unless the extension of the target is
-    /// that of another format of heights.
+    /// that of another format of heights, or the target has a driver of GDAL.
     ///
     /// # Errors
     /// If the file cannot be written, or the run is canceled.
     pub fn write(&self, target: Destination, context: &Context) -> Result<RasterSummary> {
+        if let Some(driver) = target.driver() {
+            return self.write_by(driver, target, context);
+        }
         if let (Content::Heights, Some(write)) = (&self.content, text_writer(target)) {
             return write(target, &self.watched(context)?);
         }
@@ -565,6 +569,27 @@ impl CellProduct<'_> {
             ..options
         };
         geotiff::write(target, self.source.as_ref(), options)
+    }
+
+    /// Writes the cells by a driver of GDAL, and reports its warnings.
+    fn write_by(
+        &self,
+        driver: &OutputDriver,
+        target: Destination,
+        context: &Context,
+    ) -> Result<RasterSummary> {
+        let cells = self.content.format();
+        let options = WriteOptions {
+            overviews: Overviews::None,
+            ..cells.into()
+        };
+        let count = geotiff::cells_written(self.frame(), &options);
+        let work = context.start(self.stage(), Size::Items(count))?;
+        let watch = |cells| work.add(cells);
+        let source = self.source.as_ref();
+        let (summary, warnings) = gdal::write_raster(target, driver, source, cells, &watch)?;
+        layers::note_warnings(target.path(), warnings, context);
+        Ok(summary)
     }
 
     /// Computes all cells, on all cores, and writes them as a PNG: in gray, 0 to 255, or in colors.

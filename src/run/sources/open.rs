@@ -34,13 +34,27 @@ use crate::terrain::CompactTin;
 
 /// Returns true if a file is LAS, LAZ or COPC.
 pub(crate) fn is_lidar(path: &Path) -> bool {
-    format(path).is_some_and(|format| format.can_hold(Holding::Attributes))
+    !gdal::is_name(path) && format(path).is_some_and(|format| format.can_hold(Holding::Attributes))
 }
 
 /// Returns the content that the first bytes and the extension indicate. If neither is known, it is
 /// points: text can have any name.
 pub(crate) fn content(path: &Path) -> Content {
+    if gdal::is_name(path) {
+        return content_for_gdal(path);
+    }
     format(path).map_or(Content::Points, |format| format.content)
+}
+
+/// Returns the content of a data set that only GDAL can open.
+fn content_for_gdal(name: &Path) -> Content {
+    let text = name.to_string_lossy();
+    let file = layer::file_of(&text);
+    match formats::of_name(file).map(|format| format.content) {
+        Some(content @ (Content::Layer | Content::Raster)) => content,
+        _ if gdal::holds_layers(file) || gdal::open_raster(file).is_err() => Content::Layer,
+        _ => Content::Raster,
+    }
 }
 
 fn format(path: &Path) -> Option<&'static Format> {
@@ -109,6 +123,9 @@ pub fn is_of_lines(path: &Path) -> bool {
 /// read once.
 fn may_have_lines(path: &Path) -> bool {
     const BEGINNING: u64 = 1 << 16;
+    if gdal::is_name(path) {
+        return true;
+    }
     let name = path.to_string_lossy();
     let mut head = Vec::new();
     let read = File::open(layer::file_of(&name))
@@ -205,6 +222,9 @@ fn spec(path: &Path) -> Result<layer::Spec> {
 fn read_layer(path: &Path, options: &layer::Options, context: &Context) -> Result<Layer> {
     let work = context.start(Stage::ReadingLayer, size(path))?;
     let watch = |bytes| work.add(bytes);
+    if gdal::is_name(path) {
+        return gdal::read_layer_with(path, options, &watch);
+    }
     layer::read_with(path, options, &watch).or_else(|error| match gdal_may_help(&error) {
         true => gdal::read_layer_with(path, options, &watch),
         false => Err(error),
@@ -230,14 +250,16 @@ pub(crate) enum Raster {
 
 impl Raster {
     pub(crate) fn open(path: &Path) -> Result<Self> {
+        let by_gdal = || gdal::open_raster(path).map(|raster| Raster::Gdal(Box::new(raster)));
+        if gdal::is_name(path) {
+            return by_gdal();
+        }
         if let Some(grid) = raster::open_grid(path) {
             return grid.map(|grid| Raster::Text(Box::new(grid)));
         }
         match raster::open(path) {
             Ok(reader) => Ok(Raster::GeoTiff(Box::new(reader))),
-            Err(error) if gdal_may_help(&error) => {
-                gdal::open_raster(path).map(|raster| Raster::Gdal(Box::new(raster)))
-            }
+            Err(error) if gdal_may_help(&error) => by_gdal(),
             Err(error) => Err(error),
         }
     }

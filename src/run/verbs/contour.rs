@@ -4,10 +4,10 @@ use std::fmt::Debug;
 
 use super::targets::{Outputs, Target};
 use super::{Keeps, Summary, TileUse, Tiles, Verb};
-use crate::error::{Result, Setting};
-use crate::io::Destination;
+use crate::error::{Error, Result, Setting, wording};
 use crate::io::contours::{self, ContourSummary};
 use crate::io::formats::Product;
+use crate::io::{Destination, gdal};
 use crate::run::context::Context;
 use crate::run::context::notice::Notice;
 use crate::run::products::contour::{ContourOptions, contour};
@@ -44,9 +44,17 @@ impl Verb for ContourOptions {
     }
 
     fn use_of_tiles(&self, targets: &[Target]) -> Result<TileUse> {
+        if let Some(table) = targets.iter().find(|of| gdal::is_connection(&of.path)) {
+            let error = "a job keeps track of its files, and a table of a database is none";
+            let error = Error::usage(error).in_file(&table.path);
+            return Ok(TileUse::Never(
+                error.cure(wording!["write a file, or leave out ", Setting::Tiles]),
+            ));
+        }
         if self.map.bands {
             targets.iter().try_for_each(|of| {
-                contours::require_areas(Destination::from(&of.path).in_format(of.extension))
+                let target = Destination::from(&of.path).in_format(of.extension);
+                contours::require_areas(target.by_driver(of.driver.as_ref()))
             })?;
         }
         Ok(TileUse::Optional)

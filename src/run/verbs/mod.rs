@@ -6,6 +6,7 @@
 mod contour;
 mod dem;
 mod hillshade;
+mod output_formats;
 pub(crate) mod point_tiles;
 mod quantity;
 mod raster;

@@ -37,8 +37,9 @@ pub(super) fn list_frame(
 
 /// Returns true if a target of shades or colors is a picture, and not a raster.
 pub(super) fn is_picture(target: &Target) -> bool {
-    formats::for_output(&target.path, Product::Shades)
-        .is_some_and(|format| format.content == Content::Picture)
+    target.driver.is_none()
+        && formats::for_output(&target.path, Product::Shades)
+            .is_some_and(|format| format.content == Content::Picture)
 }
 
 /// Writes shades or colors to all targets, as pictures or rasters. `cell_bytes` returns the bytes

@@ -4,11 +4,16 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
+#[cfg(feature = "cli")]
+pub(crate) use super::output_formats::PROFILES;
+pub(crate) use super::output_formats::{Format, Formats, TABLES, formats_of};
+use super::output_formats::{find, gdal_content};
 use crate::error::{Error, Result, Setting, wording};
 use crate::io::formats::{self, Product};
-#[cfg(feature = "cli")]
-use crate::io::profiles;
-use crate::io::{self, Destination, Output, OutputSet, contours, layer};
+use crate::io::gdal;
+use crate::io::{
+    self, Destination, DriverOptions, Output, OutputDriver, OutputSet, contours, layer,
+};
 use crate::run::context::Context;
 use crate::run::context::notice::Notice;
 use crate::run::context::units::bytes;
@@ -33,6 +38,9 @@ pub struct Targets {
     /// Files that are read besides those of the request, such as lists of inputs: no output may
     /// replace them.
     pub also_read: Vec<PathBuf>,
+    /// The driver of GDAL that writes the outputs, and its options.
+    #[serde(default)]
+    pub driver: DriverOptions,
 }
 
 /// What happens to a file that exists at the path of an output.
@@ -96,6 +104,7 @@ impl Targets {
             replaced,
             labels,
             also_read,
+            driver: _,
         } = self;
         files
             .iter_mut()
@@ -120,10 +129,14 @@ impl Targets {
         is_own: &dyn Fn(&Path) -> bool,
     ) -> Result<Outputs> {
         let may_replace = |file: &Path| self.existing == Existing::Replace || is_own(file);
-        let formats = formats_of(product, |_| ());
-        let mut outputs = resolve(&self.files, &may_replace, &formats, read)?;
+        let may_be = |product| Formats {
+            all: formats_of(product, |_| ()).into(),
+            driver: Some(&self.driver),
+            of_gdal: gdal_content(product).map(|content| (content, ())),
+        };
+        let mut outputs = resolve(&self.files, &may_replace, &may_be(product), read)?;
         if let Some(labels) = &self.labels {
-            let formats = formats_of(Product::Lines, |_| ());
+            let formats = may_be(Product::Lines);
             let found = resolve(std::slice::from_ref(labels), &may_replace, &formats, read)?;
             outputs.labels = found.targets.into_iter().next();
             if let Some(labels) = &mut outputs.labels {
@@ -134,7 +147,9 @@ impl Targets {
                 {
                     // One spelling for one file: writers compare paths.
                     Some(own)
-                        if product == Product::Contours && contours::takes_labels(&labels.path) =>
+                        if product == Product::Contours
+                            && own.driver.is_none()
+                            && contours::takes_labels(&labels.path) =>
                     {
                         labels.path.clone_from(&own.path);
                     }
@@ -206,72 +221,23 @@ pub(crate) fn add_table(
     Ok(())
 }
 
-/// The format of tables.
-pub(crate) const TABLES: &[Format<()>] = &[Format {
-    extension: "csv",
-    kind: (),
-    companions: &[],
-}];
-
-/// The formats of profiles, see [`profiles`](crate::io::profiles).
-#[cfg(feature = "cli")]
-pub(crate) const PROFILES: &[Format<()>] = &[of_profiles(0), of_profiles(1), of_profiles(2)];
-
-#[cfg(feature = "cli")]
-const fn of_profiles(number: usize) -> Format<()> {
-    Format {
-        extension: profiles::EXTENSIONS[number],
-        kind: (),
-        companions: &[],
-    }
-}
-
-/// A file format that a verb can write.
-#[derive(Debug)]
-pub(crate) struct Format<F: 'static> {
-    pub(crate) extension: &'static str,
-    pub(crate) kind: F,
-    /// Extensions of the files that are written with it.
-    pub(crate) companions: &'static [&'static str],
-}
-
-/// Returns the formats that a product can be written in, one for each extension.
-pub(crate) fn formats_of<F>(
-    product: Product,
-    kind: impl Fn(&formats::Format) -> F,
-) -> Vec<Format<F>> {
-    let formats = formats::FORMATS
-        .iter()
-        .filter(|format| format.writes(product));
-    let by_extension = formats.flat_map(|format| {
-        format
-            .extensions
-            .iter()
-            .map(move |extension| (format, extension))
-    });
-    by_extension
-        .map(|(format, extension)| Format {
-            extension,
-            kind: kind(format),
-            companions: format.beside,
-        })
-        .collect()
-}
-
 /// A file to write, whose format is known.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Target<F = ()> {
     /// Where it appears.
     pub path: PathBuf,
     pub(crate) kind: F,
-    /// The extension of its format, whatever the path says.
+    /// The extension of its format, whatever the path says; empty if a driver of GDAL writes it.
     pub extension: &'static str,
     /// Extensions of the files that are written with it.
     pub(crate) companions: &'static [&'static str],
+    /// The driver of GDAL that writes it, and whichever files it writes beside; `None` if this
+    /// crate does.
+    pub(crate) driver: Option<OutputDriver>,
 }
 
 impl<F> Target<F> {
-    /// Returns the paths of the file and of those that are written with it.
+    /// Returns the paths of the file and of those that are known to be written with it.
     pub(crate) fn files(&self) -> impl Iterator<Item = PathBuf> {
         let files = formats::with_companions(&self.path, self.extension, self.companions);
         files.into_iter().map(|(path, _)| path)
@@ -279,7 +245,8 @@ impl<F> Target<F> {
 
     /// Returns the destination for a writer.
     pub fn within<'a>(&'a self, set: &'a OutputSet) -> Destination<'a> {
-        set.at(&self.path).in_format(self.extension)
+        let target = set.at(&self.path).in_format(self.extension);
+        target.by_driver(self.driver.as_ref())
     }
 }
 
@@ -324,22 +291,32 @@ impl<F> Outputs<F> {
 pub(crate) fn resolve<F: Copy>(
     files: &[PathBuf],
     may_replace: &dyn Fn(&Path) -> bool,
-    formats: &[Format<F>],
+    formats: &Formats<F>,
     inputs: &[PathBuf],
 ) -> Result<Outputs<F>> {
     let mut targets: Vec<Target<F>> = Vec::new();
     for path in files {
-        require_name(path)?;
-        let format = find(path, formats)?;
+        let (format, driver) = formats.choose(path)?;
+        if driver.is_none() || !gdal::is_connection(path) {
+            require_name(path)?;
+            require_free(path, &format, may_replace, inputs)?;
+        }
         if targets.iter().any(|target| is_same(&target.path, path)) {
             return Err(named_twice(path).cure(OTHER_NAME));
         }
-        require_free(path, format, may_replace, inputs)?;
+        let driver = driver.map(|options| OutputDriver {
+            name: options.name.unwrap_or_default(),
+            creation: options.creation,
+            layer: options.layer,
+            replaces: may_replace(path),
+            read: inputs.iter().map(|path| identity(path)).collect(),
+        });
         let target = Target {
             path: path.clone(),
             kind: format.kind,
             extension: format.extension,
             companions: format.companions,
+            driver,
         };
         require_own_files(&target, &targets)?;
         targets.push(target);
@@ -364,7 +341,7 @@ fn named_twice(path: &Path) -> Error {
 fn require_own_files<F>(target: &Target<F>, others: &[Target<F>]) -> Result<()> {
     let others: Vec<PathBuf> = others
         .iter()
-        .filter(|other| other.extension == target.extension)
+        .filter(|other| other.extension == target.extension && other.driver.is_none())
         .flat_map(Target::files)
         .collect();
     let mut own = target.files();
@@ -616,32 +593,4 @@ fn require_not_read_along(file: &Path, inputs: &[PathBuf]) -> Result<()> {
         .cure("give it another name")),
         None => Ok(()),
     }
-}
-
-fn find<'a, F>(path: &Path, formats: &'a [Format<F>]) -> Result<&'a Format<F>> {
-    let extension = path
-        .extension()
-        .and_then(|e| e.to_str())
-        .unwrap_or_default();
-    let named = |format: &&Format<F>| format.extension.eq_ignore_ascii_case(extension);
-    // `/dev/stdout` names no format.
-    let is_nameless = extension.is_empty() && io::is_stream(path);
-    let default = || {
-        formats
-            .iter()
-            .find(|format| is_nameless && format.companions.is_empty())
-    };
-    formats.iter().find(named).or_else(default).ok_or_else(|| {
-        let known: Vec<String> = formats
-            .iter()
-            .map(|format| format!(".{}", format.extension))
-            .collect();
-        let found = match extension {
-            "" => "the output has no extension, which would select its format".to_owned(),
-            _ => format!("`.{extension}` is not a format that can be written here"),
-        };
-        Error::usage(found)
-            .in_file(path)
-            .cure(format!("use one of {}", known.join(", ")))
-    })
 }

@@ -2,6 +2,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::driver::DriverArgs;
 use super::parse::{not_negative, positive};
 use super::surface::SurfaceArgs;
 use super::tiles::MemoryArgs;
@@ -81,4 +82,7 @@ pub(crate) struct CompareArgs {
 
     #[command(flatten)]
     pub(crate) memory: MemoryArgs,
+
+    #[command(flatten)]
+    pub(crate) driver: DriverArgs,
 }

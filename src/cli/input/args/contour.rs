@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
+use super::driver::DriverArgs;
 use super::parse::{finite, not_negative, positive, smoothing};
 use super::surface::SurfaceArgs;
 use super::tiles::TileArgs;
@@ -61,6 +62,8 @@ pub(crate) struct ContourArgs {
 
     #[command(flatten)]
     pub(crate) tiles: TileArgs,
+    #[command(flatten)]
+    pub(crate) driver: DriverArgs,
 }
 
 /// How contours become those of a map.

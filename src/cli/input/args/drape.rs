@@ -2,6 +2,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::driver::DriverArgs;
 use super::parse::positive;
 use super::surface::SurfaceArgs;
 use super::tiles::MemoryArgs;
@@ -49,4 +50,6 @@ pub(crate) struct DrapeArgs {
 
     #[command(flatten)]
     pub(crate) memory: MemoryArgs,
+    #[command(flatten)]
+    pub(crate) driver: DriverArgs,
 }

@@ -2,6 +2,7 @@
 
 use clap::{Args, ValueEnum};
 
+use super::driver::DriverArgs;
 use super::parse::positive;
 use super::surface::SurfaceArgs;
 use super::tiles::TileArgs;
@@ -21,6 +22,8 @@ pub(crate) struct QuantityArgs {
     pub(crate) overviews: OverviewArgs,
     #[command(flatten)]
     pub(crate) tiles: TileArgs,
+    #[command(flatten)]
+    pub(crate) driver: DriverArgs,
 }
 
 /// The factor for heights.

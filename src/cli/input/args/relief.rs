@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
+use super::driver::DriverArgs;
 use super::surface::SurfaceArgs;
 use super::tiles::TileArgs;
 use super::verbs::{CellArgs, OutputArgs};
@@ -56,6 +57,8 @@ pub(crate) struct ColorReliefArgs {
     pub(crate) cells: CellArgs,
     #[command(flatten)]
     pub(crate) tiles: TileArgs,
+    #[command(flatten)]
+    pub(crate) driver: DriverArgs,
 }
 
 /// The colors of heights between those of a ramp.

@@ -2,6 +2,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
+use super::driver::DriverArgs;
 use super::parse::{
     ClassRange, Corners, ReturnRange, ThinRule, altitude, finite, positive, smallest_angle,
 };
@@ -595,6 +596,8 @@ pub(crate) struct DemArgs {
 
     #[command(flatten)]
     pub(crate) tiles: TileArgs,
+    #[command(flatten)]
+    pub(crate) driver: DriverArgs,
 }
 
 /// How heights between the vertices are computed.
@@ -683,6 +686,8 @@ pub(crate) struct HillshadeArgs {
 
     #[command(flatten)]
     pub(crate) tiles: TileArgs,
+    #[command(flatten)]
+    pub(crate) driver: DriverArgs,
 }
 
 /// How shades follow from slopes.

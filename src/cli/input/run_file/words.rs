@@ -13,6 +13,7 @@ use super::tree::{Entry, Value};
 use crate::cli::input::args::{Cli, RunArgs, SurfaceArgs, TileArgs};
 use crate::cli::input::inputs::in_folder;
 use crate::error::{Error, Result};
+use crate::io::gdal;
 
 /// The key of the files of a surface, which have no name on the command line.
 pub(super) const FILES: &str = "files";
@@ -392,9 +393,9 @@ fn located(arg: &Arg, word: &str, folder: &Path) -> String {
         }
     };
     // Standard input, a database or an address.
-    let is_no_path = word == "-" || word.starts_with("PG:") || word.contains("://");
+    let is_no_path = word == "-" || gdal::is_name(word) || word.contains("://");
     match arg.get_value_hint() {
-        ValueHint::AnyPath if is_no_path => word.to_owned(),
+        ValueHint::AnyPath if is_no_path => gdal::without_secrets(word).into_owned(),
         ValueHint::AnyPath if WRITTEN.contains(&arg.get_id().as_str()) => typed(folder.join(word)),
         ValueHint::AnyPath => match word.strip_prefix('@') {
             Some(list) if !folder.join(word).exists() => {

@@ -93,6 +93,37 @@ impl Output {
         })
     }
 
+    /// Takes a complete file, which is on the disk of `target`, as the output. Its bytes are copied
+    /// to a pipe or a device.
+    #[cfg(feature = "gdal")]
+    pub(super) fn adopt(file: &Path, target: &Path, mark: Option<&str>) -> Result<Self> {
+        let adopt = || -> Result<Self> {
+            let TargetKind::File(path) = TargetKind::of(target)? else {
+                let mut output = Self::open(target, mark, Writing::InOrder)?;
+                io::copy(&mut File::open(file)?, &mut output)?;
+                return Ok(output);
+            };
+            let replaced = target::replaceable(&path)?;
+            let (hidden, temporary) = Temporary::create(&path, &temporary::prefix(mark))?;
+            let usual = hidden.metadata()?.permissions();
+            std::fs::rename(file, temporary.path())?;
+            let file = File::options()
+                .read(true)
+                .write(true)
+                .open(temporary.path())?;
+            match replaced {
+                Some(old) => target::take_over(&file, &old)?,
+                None => file.set_permissions(usual)?,
+            }
+            Ok(Output {
+                file: BufWriter::new(file),
+                target: target.to_path_buf(),
+                sink: Sink::Renamed(temporary, path),
+            })
+        };
+        adopt().map_err(|e| e.in_file(target))
+    }
+
     /// Returns the file with all bytes that were written, from its beginning; `None` if they go to
     /// a pipe or a device.
     pub(super) fn read_back(&mut self) -> io::Result<Option<&mut File>> {

@@ -4,7 +4,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use super::target::folder_of;
-use super::temporary::{Renames, Temporary};
+use super::temporary::{self, Renames, Temporary};
 use crate::error::{Error, Result, Setting, wording};
 
 /// By what a folder is known to be one that this program has written.
@@ -63,7 +63,7 @@ impl OutputFolder {
                 return Err(Error::from(missing).cure(cure));
             }
             require_replaceable(&path, kind, replaces)?;
-            Ok(Temporary::folder_beside(&path)?)
+            Ok(Temporary::folder_beside(&path, &temporary::prefix(None))?)
         };
         let staged = stage().map_err(|e: Error| e.in_file(target))?;
         Ok(OutputFolder {

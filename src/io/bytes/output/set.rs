@@ -3,7 +3,10 @@ use std::fs::File;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
+use super::driver::OutputDriver;
 use super::file::{self, Flushed, Output, Writing};
+#[cfg(feature = "gdal")]
+use super::target::TargetKind;
 use super::temporary::{Renames, Temporary};
 use super::{target, temporary};
 use crate::error::{Error, Result};
@@ -42,6 +45,34 @@ struct Staged {
     /// Outputs that are on the disk, and no longer open.
     closed: Vec<Flushed>,
     stale: Vec<PathBuf>,
+    /// What is in a database, where it appears last.
+    deferred: Vec<Box<dyn Deferred>>,
+}
+
+#[cfg(feature = "gdal")]
+impl Staged {
+    /// Returns true if there is a file for this target.
+    fn has(&self, target: &Path) -> bool {
+        let files = self
+            .companions
+            .iter()
+            .chain(&self.outputs)
+            .map(Output::target);
+        let closed = self.closed.iter().map(|file| file.target.as_path());
+        files.chain(closed).any(|own| own == target)
+    }
+}
+
+/// An output that is no file, such as a table: it appears by a call, or not at all if it is dropped.
+pub(crate) trait Deferred: std::fmt::Debug {
+    /// Returns its name.
+    fn target(&self) -> &Path;
+
+    /// Makes it appear.
+    ///
+    /// # Errors
+    /// If it cannot.
+    fn appear(self: Box<Self>) -> Result<()>;
 }
 
 impl OutputSet {
@@ -50,6 +81,7 @@ impl OutputSet {
         Destination {
             path,
             extension: None,
+            driver: None,
             set: Some(self),
         }
     }
@@ -124,6 +156,7 @@ impl OutputSet {
             outputs,
             closed,
             stale,
+            deferred,
         } = self.staged.into_inner();
         let companion_count = companions.len();
         let companions = companions.into_iter().map(Output::flush_to_disk);
@@ -135,13 +168,21 @@ impl OutputSet {
         // Dropped before `flushed`, whose remains are removed under the same lock.
         let mut renames = Renames::begin();
         let mut moves = Vec::new();
-        match replace_all(&flushed, &stale, &mut moves, &mut renames) {
+        let names: Vec<PathBuf> = deferred
+            .iter()
+            .map(|of| of.target().to_path_buf())
+            .collect();
+        let replaced = replace_all(&flushed, &stale, &mut moves, &mut renames);
+        // Renames can be undone, the end of a transaction cannot.
+        let appear = || deferred.into_iter().try_for_each(Deferred::appear);
+        match replaced.and_then(|()| appear()) {
             Ok(()) => {
                 moves.iter().for_each(Move::forget);
                 drop(renames);
                 let mut targets: Vec<PathBuf> =
                     flushed.into_iter().map(|file| file.target).collect();
                 targets.rotate_left(companion_count);
+                targets.extend(names);
                 Ok(targets)
             }
             Err(error) => Err(moves
@@ -161,6 +202,7 @@ impl OutputSet {
 pub struct Destination<'a> {
     path: &'a Path,
     extension: Option<&'a str>,
+    driver: Option<&'a OutputDriver>,
     set: Option<&'a OutputSet>,
 }
 
@@ -169,6 +211,7 @@ impl<'a, P: AsRef<Path> + ?Sized> From<&'a P> for Destination<'a> {
         Destination {
             path: path.as_ref(),
             extension: None,
+            driver: None,
             set: None,
         }
     }
@@ -188,6 +231,17 @@ impl<'a> Destination<'a> {
             extension: Some(extension),
             ..self
         }
+    }
+
+    /// Returns this destination, written by a driver of GDAL.
+    #[must_use]
+    pub(crate) fn by_driver(self, driver: Option<&'a OutputDriver>) -> Self {
+        Destination { driver, ..self }
+    }
+
+    /// Returns the driver of GDAL that writes the output; `None` if this crate does.
+    pub(crate) fn driver(self) -> Option<&'a OutputDriver> {
+        self.driver
     }
 
     /// Opens the output, as [`Output::create`] does.
@@ -306,6 +360,106 @@ impl<'a> Destination<'a> {
     }
 }
 
+#[cfg(feature = "gdal")]
+impl Destination<'_> {
+    /// Returns a hidden folder on the disk of the output, for files that a library writes by path.
+    ///
+    /// # Errors
+    /// If it cannot be created.
+    pub(crate) fn staging_folder(self) -> Result<Temporary> {
+        let created = match TargetKind::of(self.path).map_err(|e| e.in_file(self.path))? {
+            TargetKind::File(path) => Temporary::folder_beside(&path, &self.temporary_prefix()),
+            TargetKind::Stream => Temporary::folder_in(&std::env::temp_dir()),
+        };
+        created.map_err(|e| Error::from(e).in_file(self.path))
+    }
+
+    /// Takes what a library has written in a [staging folder](Self::staging_folder): files and
+    /// folders, each of which will appear next to the output, under its own name. Old files that
+    /// would be wrong next to it are removed.
+    ///
+    /// # Errors
+    /// If what is there must stay, if there is a folder where one is to appear, or as
+    /// [`OutputSet::commit`].
+    pub(crate) fn put_staged(self, folder: &Path, stale: &[PathBuf]) -> Result<()> {
+        let in_file = |error: std::io::Error| Error::from(error).in_file(self.path);
+        let (mut outputs, mut folders) = (Vec::new(), Vec::new());
+        let mut entries: Vec<_> = std::fs::read_dir(folder)
+            .and_then(Iterator::collect)
+            .map_err(in_file)?;
+        entries.sort_unstable_by_key(std::fs::DirEntry::file_name);
+        for entry in entries {
+            let target = match Some(entry.file_name().as_os_str()) == self.path.file_name() {
+                true => self.path.to_path_buf(),
+                false => self.path.with_file_name(entry.file_name()),
+            };
+            let is_main = target == self.path;
+            if !is_main && let Some(driver) = self.driver {
+                driver.require_free(&target)?;
+            }
+            if entry.file_type().map_err(in_file)?.is_dir() {
+                folders.push(self.adopted_folder(&entry.path(), target)?);
+            } else {
+                let output = Output::adopt(&entry.path(), &target, self.mark())?;
+                outputs.push((is_main, output));
+            }
+        }
+        // What others need comes first: the output itself is the last.
+        outputs.sort_by_key(|(is_main, _)| *is_main);
+        let is_written = |path: &&PathBuf| !outputs.iter().any(|(_, own)| own.target() == *path);
+        let stale: Vec<PathBuf> = stale.iter().filter(is_written).cloned().collect();
+        let own = OutputSet::default();
+        let mut staged = self.set.unwrap_or(&own).staged.borrow_mut();
+        if let Some((_, twice)) = outputs.iter().find(|(_, new)| staged.has(new.target())) {
+            let error = "another output of this run writes this file, too";
+            return Err(Error::usage(error)
+                .in_file(twice.target())
+                .cure("give one of them another name"));
+        }
+        for (is_main, output) in outputs {
+            match is_main {
+                true => staged.outputs.push(output),
+                false => staged.companions.push(output),
+            }
+        }
+        staged.closed.extend(folders);
+        staged.stale.extend(stale);
+        drop(staged);
+        own.commit().map(drop)
+    }
+
+    /// Returns a complete folder under a hidden name, next to where it will appear.
+    fn adopted_folder(self, folder: &Path, target: PathBuf) -> Result<Flushed> {
+        let adopt = || -> Result<Temporary> {
+            if target.symlink_metadata().is_ok() {
+                return Err(target::folder_error());
+            }
+            let hidden = Temporary::folder_beside(&target, &self.temporary_prefix())?;
+            // In the place of one that is empty.
+            std::fs::rename(folder, hidden.path())?;
+            Ok(hidden)
+        };
+        match adopt() {
+            Ok(hidden) => Ok(Flushed {
+                renamed: Some((hidden, target.clone())),
+                target,
+            }),
+            Err(error) => Err(error.in_file(&target)),
+        }
+    }
+
+    /// Takes an output that is no file.
+    ///
+    /// # Errors
+    /// As [`OutputSet::commit`].
+    pub(crate) fn put_deferred(self, output: Box<dyn Deferred>) -> Result<()> {
+        let own = OutputSet::default();
+        let set = self.set.unwrap_or(&own);
+        set.staged.borrow_mut().deferred.push(output);
+        own.commit().map(drop)
+    }
+}
+
 /// A step of a commit: what it did to a path.
 struct Move<'a> {
     target: &'a Path,
@@ -326,7 +480,10 @@ impl Move<'_> {
     /// If that is impossible; the message says where the previous file is.
     fn undo(&self) -> std::result::Result<(), String> {
         let Some(before) = &self.before else {
-            let _ = std::fs::remove_file(self.target);
+            let _ = match self.target.is_dir() && !self.target.is_symlink() {
+                true => std::fs::remove_dir_all(self.target),
+                false => std::fs::remove_file(self.target),
+            };
             return Ok(());
         };
         std::fs::rename(before, self.target).map_err(|_| {

@@ -145,10 +145,10 @@ impl Temporary {
         Ok(Temporary { path })
     }
 
-    /// Creates a hidden folder next to `target`, which can become it.
-    pub(super) fn folder_beside(target: &Path) -> io::Result<Self> {
+    /// Creates a hidden folder next to `target`, which can become it; its name begins with `prefix`.
+    pub(super) fn folder_beside(target: &Path, prefix: &str) -> io::Result<Self> {
         let mut builder = tempfile::Builder::new();
-        builder.prefix(PREFIX);
+        builder.prefix(prefix);
         // Others may read what it becomes: only the umask limits who.
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));

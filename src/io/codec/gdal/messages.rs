@@ -7,6 +7,7 @@ use std::sync::Once;
 
 use gdal::errors::{CplErrType, GdalError};
 
+use super::names::{hidden, is_name};
 use crate::error::{Error, Kind, Wording};
 
 thread_local! {
@@ -26,7 +27,9 @@ pub(super) fn listen() {
                 return;
             }
             CAUGHT.with_borrow_mut(|caught| {
-                let message = (is_error, text.trim().to_owned());
+                // Some have several lines.
+                let text: Vec<&str> = text.split_whitespace().collect();
+                let message = (is_error, hidden(&text.join(" ")).into_owned());
                 if caught.len() < KEPT && !caught.contains(&message) {
                     caught.push(message);
                 }
@@ -58,6 +61,35 @@ pub(super) fn warnings() -> Vec<Wording> {
     })
 }
 
+/// Returns the error of a driver that could not write, if one was captured since [`listen`].
+/// `hidden` is the path that GDAL knows, `target` where the output will appear.
+pub(super) fn refusal(hidden: &Path, target: &Path) -> Option<Error> {
+    let text = CAUGHT.with_borrow(|caught| {
+        let error = caught.iter().find(|message| message.0)?;
+        Some(shown(&error.1, hidden, target))
+    })?;
+    Some(Error::unsupported(format!("GDAL: {text}")).in_file(target))
+}
+
+/// Returns the texts of the warnings captured since [`listen`], while a driver wrote.
+pub(super) fn warning_texts(hidden: &Path, target: &Path) -> Vec<String> {
+    CAUGHT.with_borrow(|caught| {
+        let warnings = caught.iter().filter(|message| !message.0);
+        warnings
+            .map(|message| format!("GDAL: {}", shown(&message.1, hidden, target)))
+            .collect()
+    })
+}
+
+/// Returns a message in which the path of an output is the one that it will have.
+fn shown(text: &str, hidden: &Path, target: &Path) -> String {
+    let hidden = hidden.to_string_lossy();
+    match hidden.is_empty() {
+        true => text.to_owned(),
+        false => text.replace(&*hidden, &target.to_string_lossy()),
+    }
+}
+
 /// Returns the error for one returned by GDAL, preferring the captured message, which says more.
 pub(super) fn error(path: &Path, error: GdalError) -> Error {
     failure(path).unwrap_or_else(|| Error::caused_by(Kind::Format, error).in_file(path))
@@ -66,13 +98,15 @@ pub(super) fn error(path: &Path, error: GdalError) -> Error {
 /// Returns the error for a file that cannot be opened, usually because it does not exist or GDAL
 /// has no driver for it.
 pub(super) fn cannot_open(path: &Path, what: &str, returned: GdalError) -> Error {
-    // A path without a file may still be a subdataset ("NETCDF:file.nc:z") or a connection.
     if let Err(reason) = std::fs::metadata(path)
-        && !path.to_string_lossy().contains(':')
+        && !is_name(path)
     {
         return Error::from(reason).in_file(path);
     }
     match failure(path) {
+        Some(error) if is_name(path) => error.cure(
+            "`gdalinfo` or `ogrinfo` shows what GDAL finds there; only rasters and layers have such names",
+        ),
         Some(error) => error,
         None => match returned {
             GdalError::NullPointer { .. } => {

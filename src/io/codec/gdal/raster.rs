@@ -4,7 +4,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use gdal::raster::GdalDataType;
 use gdal::{Dataset, DatasetOptions, GdalOpenFlags};
 
-use super::messages;
+use super::{messages, names};
 use crate::crs::Crs;
 use crate::data::{BlockSource, Frame, Grid, Window};
 use crate::error::{Error, Result, Wording};
@@ -40,13 +40,13 @@ pub struct Raster {
 /// # Errors
 /// If GDAL cannot open it, or it has no band.
 pub fn open_raster(path: impl AsRef<Path>) -> Result<Raster> {
-    let path = path.as_ref();
+    let path = &*names::shown(path.as_ref());
     messages::listen();
     let options = DatasetOptions {
-        open_flags: GdalOpenFlags::GDAL_OF_RASTER,
+        open_flags: GdalOpenFlags::GDAL_OF_RASTER | GdalOpenFlags::GDAL_OF_VERBOSE_ERROR,
         ..DatasetOptions::default()
     };
-    let dataset = Dataset::open_ex(path, options)
+    let dataset = Dataset::open_ex(names::with_secrets(path), options)
         .map_err(|error| messages::cannot_open(path, "raster", error))?;
     let in_file = |error| messages::error(path, error);
     if dataset.raster_count() == 0 {

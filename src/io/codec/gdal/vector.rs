@@ -8,7 +8,7 @@ use gdal::vector::{
 use gdal::{Dataset, DatasetOptions, GdalOpenFlags};
 use gdal_sys::OGRwkbGeometryType as Type;
 
-use super::messages;
+use super::{messages, names};
 use crate::crs::Crs;
 use crate::data::{Layer, Shape, Value, oriented};
 use crate::error::{Error, Result};
@@ -44,19 +44,29 @@ pub fn read_layer(path: &Path, layer: Option<&str>) -> Result<Layer> {
 /// Those of [`read_layer`], and that of the watch; if an attribute does not exist, or a value of a
 /// requested column is not a number.
 pub fn read_layer_with(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
+    let path = names::shown(path);
     options
-        .read_chosen(|options| read_all(path, options, watch))
-        .map_err(|error| error.in_file(path))
+        .read_chosen(|options| read_all(&path, options, watch))
+        .map_err(|error| error.in_file(&path))
+}
+
+/// Returns true if GDAL opens a data set as vector layers.
+pub fn holds_layers(path: &Path) -> bool {
+    messages::listen();
+    open(&names::shown(path)).is_ok_and(|dataset| dataset.layer_count() > 0)
+}
+
+fn open(path: &Path) -> gdal::errors::Result<Dataset> {
+    let options = DatasetOptions {
+        open_flags: GdalOpenFlags::GDAL_OF_VECTOR | GdalOpenFlags::GDAL_OF_VERBOSE_ERROR,
+        ..DatasetOptions::default()
+    };
+    Dataset::open_ex(names::with_secrets(path), options)
 }
 
 fn read_all(path: &Path, options: &Options, watch: Watch) -> Result<Layer> {
     messages::listen();
-    let open = DatasetOptions {
-        open_flags: GdalOpenFlags::GDAL_OF_VECTOR,
-        ..DatasetOptions::default()
-    };
-    let dataset = Dataset::open_ex(path, open)
-        .map_err(|error| messages::cannot_open(path, "vector", error))?;
+    let dataset = open(path).map_err(|error| messages::cannot_open(path, "vector", error))?;
     let layers: Vec<String> = dataset.layers().map(|layer| layer.name()).collect();
     let is_field = |name: &str| {
         dataset.layers().any(|layer| {

@@ -41,6 +41,23 @@ pub use layout::{SampleKind, SampleType};
 pub use read::{Extremes, GeoTiffInfo, GeoTiffReader, open};
 pub use write::{Overviews, WriteOptions, cells_written, write};
 
+/// Creation options of GDAL that describe how a GeoTIFF is always written.
+pub(crate) const AS_WRITTEN: &[&str] = &[
+    "TILED=YES",
+    "COMPRESS=DEFLATE",
+    "PREDICTOR=3",
+    "BLOCKXSIZE=256",
+    "BLOCKYSIZE=256",
+    "SPARSE_OK=TRUE",
+    "SPARSE_OK=YES",
+    "BIGTIFF=IF_NEEDED",
+    "BIGTIFF=IF_SAFER",
+    "NUM_THREADS=ALL_CPUS",
+    "PREDICTOR=YES",
+    "OVERVIEWS=AUTO",
+    "OVERVIEW_RESAMPLING=AVERAGE",
+];
+
 /// Limit for the cells of one read (4 GiB of values).
 pub const MAX_CELLS: usize = 1 << 29;
 
