@@ -18,7 +18,7 @@ use program::{Run, folder_with, run_in};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// A surface over 6 x 5 cells of 1 that is not symmetric in any way, with a hole at the rim, in UTM.
+/// A surface over 6 x 5 cells of 1 that is not symmetric in any way, with a cut corner, in UTM.
 fn surface() -> TempDir {
     let mut points = String::new();
     for row in 0..6 {

@@ -217,14 +217,14 @@ fn passwords_are_nowhere() {
         &[
             "job",
             "plan",
+            "job",
+            "--",
             "dem",
             "points.xyz",
             "--breaklines",
             url,
             "-o",
             "a.tif",
-            "--job",
-            "job",
         ],
         &[
             "dem",

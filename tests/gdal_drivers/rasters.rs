@@ -25,7 +25,6 @@ const EXACT: &[(&str, &str)] = &[
     ("KRO", "a.kro"),
     ("PCRaster", "a.map"),
     ("R", "a.rda"),
-    ("RMF", "a.rsw"),
     ("RRASTER", "a.grd"),
     ("SAGA", "a.sdat"),
     ("SIGDEM", "a.sigdem"),
@@ -53,7 +52,9 @@ fn read(folder: &TempDir, name: &str) -> Grid {
 fn written_by(driver: &str, name: &str) -> TempDir {
     let folder = surface();
     let run = run_verb(&folder, &["dem"], &["-of", driver, "-o", name, "-q"]);
-    assert_eq!((run.code, &run.stderr[..]), (0, ""), "{driver}");
+    assert_eq!(run.code, 0, "{driver}: {}", run.stderr);
+    let is_known = run.stderr.is_empty() || run.stderr.contains("without its coordinate system");
+    assert!(is_known, "{driver}: {}", run.stderr);
     folder
 }
 
@@ -108,7 +109,7 @@ fn what_a_driver_changes_is_said_or_refused() {
 
 #[test]
 fn a_compound_system_stays_compound() {
-    for name in ["a.img", "a.nc", "a.sdat", "a.tif"] {
+    for name in ["a.bt", "a.img", "a.nc", "a.sdat", "a.tif"] {
         let folder = surface();
         let args = [
             "dem",
@@ -121,11 +122,7 @@ fn a_compound_system_stays_compound() {
         super::run_in(&folder, &args).works(&[]);
         let judged = gdalinfo(&folder, name);
         let system = judged["coordinateSystem"]["wkt"].as_str().unwrap();
-        assert_eq!(
-            system.contains("COMPOUNDCRS"),
-            name != "a.sdat" && name != "a.img",
-            "{name}: {system}"
-        );
+        assert!(system.contains("COMPOUNDCRS"), "{name}: {system}");
     }
 }
 
@@ -223,7 +220,7 @@ fn shades_and_colors_have_bytes() {
         &["color-relief"],
         &["-of", "AAIGrid", "-o", "c.asc"],
     )
-    .fails(1, &["c.asc: GDAL: AAIG driver doesn't support 4 bands"]);
+    .fails(1, &["AAIG driver doesn't support 4 bands"]);
     run_verb(&folder, &["slope"], &["-of", "HFA", "-o", "slope.img"]).works(&["slope"]);
 }
 

@@ -45,31 +45,33 @@ fn a_job_keeps_its_driver() {
     let tiles = ["--tiles", "2x2", "--job", "job"];
     let written = ["-of", "ENVI", "-o", "a.dat", "-co", "INTERLEAVE=BIL"];
     run_verb(&folder, &["dem"], &[&written[..], &tiles].concat()).works(&[]);
-    // As it was written, it is found again.
-    run_verb(
-        &folder,
-        &["dem"],
-        &[&written[..], &tiles, &["--resume"]].concat(),
-    )
-    .works(&[]);
     let header = std::fs::read_to_string(folder.path().join("a.hdr")).unwrap();
     assert!(header.contains("interleave = bil"), "{header}");
-    super::run_in(
-        &folder,
-        &[
-            "job",
-            "plan",
-            "dem",
-            "points.xyz",
-            "-of",
-            "HFA",
-            "-o",
-            "c.img",
-            "--job",
-            "other",
-        ],
-    )
-    .works(&[]);
+    // Where nothing has changed, the output stays; else it is written again, by the driver.
+    let update = |said: &[&str]| {
+        let options = [&written[..], &tiles, &["--update"]].concat();
+        run_verb(&folder, &["dem"], &options).works(said);
+    };
+    update(&[]);
+    let points = folder.path().join("points.xyz");
+    let more = std::fs::read_to_string(&points).unwrap() + "500003.5 5300002.5 150\n";
+    std::fs::write(&points, more).unwrap();
+    update(&["written     a.dat"]);
+    let cells = open_raster(folder.path().join("a.dat")).unwrap();
+    assert!(cells.read_grid().unwrap().values.contains(&150.0));
+    let plan = [
+        "job",
+        "plan",
+        "other",
+        "--",
+        "dem",
+        "points.xyz",
+        "--of",
+        "HFA",
+        "-o",
+        "c.img",
+    ];
+    super::run_in(&folder, &plan).works(&[]);
     super::run_in(&folder, &["job", "run", "other"]).works(&[]);
     assert!(open_raster(folder.path().join("c.img")).is_ok());
 }

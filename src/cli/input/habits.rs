@@ -551,7 +551,8 @@ fn with_output(verb: &str, mut words: Vec<OsString>) -> Result<(Vec<OsString>, V
             .to_string_lossy()
             .to_ascii_lowercase();
         // A driver writes any name.
-        let is_driven = words.iter().any(|word| word == "--of") && !path.exists();
+        let is_driven =
+            DRIVEN.contains(&verb) && words.iter().any(|word| word == "--of") && !path.exists();
         if is_driven || written(verb).contains(&extension.as_str()) {
             if path.exists() && !words.iter().any(|word| word == "--overwrite") {
                 let name = path.display();

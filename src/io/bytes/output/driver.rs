@@ -1,8 +1,12 @@
 //! Which driver of GDAL writes an output.
 
-use std::path::{Path, PathBuf};
+#[cfg(feature = "gdal")]
+use std::path::Path;
+use std::path::PathBuf;
 
+#[cfg(feature = "gdal")]
 use super::require_absent;
+#[cfg(feature = "gdal")]
 use crate::error::{Error, Result};
 
 /// The driver of GDAL that writes outputs, and what it is given. By default the extension of an
@@ -40,10 +44,11 @@ pub(crate) struct OutputDriver {
     pub(crate) layer: Vec<String>,
     /// True if files that exist may be replaced.
     pub(crate) replaces: bool,
-    /// Files that are read, by their [canonical](Path::canonicalize) paths.
+    /// Files that are read, by their [canonical](std::path::Path::canonicalize) paths.
     pub(crate) read: Vec<PathBuf>,
 }
 
+#[cfg(feature = "gdal")]
 impl OutputDriver {
     /// Returns an error if a file may not be written, because something that should stay is there.
     ///

@@ -63,7 +63,8 @@ impl Staged {
     }
 }
 
-/// An output that is no file, such as a table: it appears by a call, or not at all if it is dropped.
+/// An output that is no file, such as a table: it appears by a call, or not at all if it is
+/// dropped.
 pub(crate) trait Deferred: std::fmt::Debug {
     /// Returns its name.
     fn target(&self) -> &Path;
@@ -394,6 +395,10 @@ impl Destination<'_> {
                 false => self.path.with_file_name(entry.file_name()),
             };
             let is_main = target == self.path;
+            // A pipe or a device has nothing beside it.
+            if !is_main && file::is_stream(self.path) {
+                continue;
+            }
             if !is_main && let Some(driver) = self.driver {
                 driver.require_free(&target)?;
             }

@@ -145,7 +145,8 @@ impl Temporary {
         Ok(Temporary { path })
     }
 
-    /// Creates a hidden folder next to `target`, which can become it; its name begins with `prefix`.
+    /// Creates a hidden folder next to `target`, which can become it; its name begins with
+    /// `prefix`.
     pub(super) fn folder_beside(target: &Path, prefix: &str) -> io::Result<Self> {
         let mut builder = tempfile::Builder::new();
         builder.prefix(prefix);

@@ -60,7 +60,11 @@ pub fn find_driver(
         ),
     ];
     for (given, list, setting) in lists {
-        let known = driver.metadata_item(list, "").map(|xml| listed(&xml));
+        let known = match setting == Setting::LayerOptions && content != DriverContent::Shapes {
+            // A raster has no layer.
+            true => Some(Vec::new()),
+            false => driver.metadata_item(list, "").map(|xml| listed(&xml)),
+        };
         given
             .iter()
             .try_for_each(|option| check(option, known.as_deref(), &name, setting))?;

@@ -96,8 +96,8 @@ pub(crate) fn write_layer(
     })
 }
 
-/// Returns the type of an attribute. Whole numbers have 32 bits where these suffice: several drivers
-/// have no others.
+/// Returns the type of an attribute. Whole numbers have 32 bits where these suffice: several
+/// drivers have no others.
 fn type_of(attributes: &Attributes, number: usize) -> OGRFieldType::Type {
     let is_long = |value: &Value| matches!(value, Value::Whole(n) if i32::try_from(*n).is_err());
     match attributes.kind(number) {
@@ -329,6 +329,10 @@ fn add_layer(
         layer: &layer,
         fields,
         has_heights: head.has_heights,
+        is_multiple: matches!(
+            head.kind,
+            Type::wkbMultiPoint | Type::wkbMultiLineString | Type::wkbMultiPolygon
+        ),
         paths,
         count: 0,
     };
@@ -341,6 +345,8 @@ struct Records<'a> {
     /// The position of each attribute in the layer; `None` if it has none.
     fields: Vec<Option<usize>>,
     has_heights: bool,
+    /// True if each record has a list of points, lines or polygons, as the layer states.
+    is_multiple: bool,
     paths: Paths<'a>,
     count: u64,
 }
@@ -380,24 +386,19 @@ impl Records<'_> {
 
     /// Returns the geometry of a shape; `None` for one without.
     fn geometry(&self, shape: &Shape) -> gdal::errors::Result<Option<Geometry>> {
-        let single = |kind, points: &[[f64; 3]]| self.simple(kind, points);
+        let point = |point: &[f64; 3]| self.simple(Type::wkbPoint, &[*point]);
+        let line = |part: &Vec<[f64; 3]>| self.simple(Type::wkbLineString, part);
         Ok(Some(match shape {
             Shape::Null => return Ok(None),
             Shape::Points(points) => match &points[..] {
                 [] => return Ok(None),
-                [point] => single(Type::wkbPoint, &[*point])?,
-                points => joined(
-                    Type::wkbMultiPoint,
-                    points.iter().map(|point| single(Type::wkbPoint, &[*point])),
-                )?,
+                [only] if !self.is_multiple => point(only)?,
+                points => joined(Type::wkbMultiPoint, points.iter().map(point))?,
             },
             Shape::Lines(parts) => match &parts[..] {
                 [] => return Ok(None),
-                [part] => single(Type::wkbLineString, part)?,
-                parts => joined(
-                    Type::wkbMultiLineString,
-                    parts.iter().map(|part| single(Type::wkbLineString, part)),
-                )?,
+                [only] if !self.is_multiple => line(only)?,
+                parts => joined(Type::wkbMultiLineString, parts.iter().map(line))?,
             },
             Shape::Polygon(rings) => self.areas(polygons(rings).into_iter())?,
             Shape::Faces(faces) => self.areas(faces.iter().map(Vec::as_slice))?,
@@ -415,7 +416,7 @@ impl Records<'_> {
                 .map(|ring| self.simple(Type::wkbLinearRing, ring));
             joined(Type::wkbPolygon, rings)
         };
-        let is_single = areas.len() == 1;
+        let is_single = areas.len() == 1 && !self.is_multiple;
         let mut areas = areas.map(polygon);
         match is_single {
             true => areas

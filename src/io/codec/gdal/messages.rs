@@ -21,6 +21,8 @@ const KEPT: usize = 16;
 pub(super) fn listen() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
+        // Nothing is written beside inputs.
+        let _ = gdal::config::set_config_option("CPL_VSIL_GZIP_WRITE_PROPERTIES", "NO");
         gdal::config::set_error_handler(|class, _, text| {
             let is_error = matches!(class, CplErrType::Failure | CplErrType::Fatal);
             if matches!(class, CplErrType::None | CplErrType::Debug) {

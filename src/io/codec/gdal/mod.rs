@@ -1,10 +1,10 @@
 //! Reads any format that [GDAL](https://gdal.org) reads, behind the feature `gdal`: vector layers
-//! as [`Layer`](crate::data::Layer), rasters as [`Grid`](crate::data::Grid) or window by window; and
-//! writes by any of its drivers, which a [`Destination`](crate::io::Destination) has.
+//! as [`Layer`](crate::data::Layer), rasters as [`Grid`](crate::data::Grid) or window by window;
+//! and writes by any of its drivers, which a [`Destination`](crate::io::Destination) has.
 //!
 //! The formats that this crate reads or writes itself (LAS, GeoTIFF, shapefile, GeoJSON) do not go
-//! through GDAL. Coordinates are always easting (or longitude) first. Messages that GDAL would print become
-//! errors and warnings.
+//! through GDAL. Coordinates are always easting (or longitude) first. Messages that GDAL would
+//! print become errors and warnings.
 //!
 //! Without the feature the functions exist and return an error that says how to get GDAL. A program
 //! that links this library with both features `proj` and `gdal` must be linked with

@@ -1,5 +1,7 @@
+use std::ffi::c_int;
 use std::path::Path;
 
+use gdal::errors::GdalError;
 use gdal::spatial_ref::{AxisMappingStrategy, SpatialRef};
 use gdal::vector::{
     Feature, FieldValue, Geometry, LayerAccess, geometry_type_flatten, geometry_type_has_z,
@@ -139,9 +141,7 @@ fn add_shapes(
         _ => into.push(Shape::Null),
     }
     let Some(field) = field else { return Ok(false) };
-    let value = feature
-        .field(field)
-        .map_err(|error| messages::error(path, error))?;
+    let value = value_of(path, feature, field)?;
     let height = value.map_or(Ok(f64::NAN), number).unwrap_or(f64::NAN);
     Ok(set_heights(&mut into[first..], height))
 }
@@ -156,9 +156,7 @@ fn add_values(
 ) -> Result<()> {
     let shapes = layer.shapes.len();
     for (column, &field) in layer.columns.iter_mut().zip(fields) {
-        let value = feature
-            .field(field)
-            .map_err(|error| messages::error(path, error))?;
+        let value = value_of(path, feature, field)?;
         let value = value.map_or(Ok(f64::NAN), number).map_err(|text| {
             not_a_number(&column.name, &text)
                 .at(format!("record {record}"))
@@ -176,13 +174,34 @@ fn keep_values(path: &Path, feature: &Feature, layer: &mut Layer) -> Result<()> 
     };
     let mut row = Vec::with_capacity(attributes.names.len());
     for field in 0..attributes.names.len() {
-        let value = feature
-            .field(field)
-            .map_err(|error| messages::error(path, error))?;
+        let value = value_of(path, feature, field)?;
         row.push(value.map_or(Value::Missing, kept));
     }
     attributes.rows.resize(layer.shapes.len(), row);
     Ok(())
+}
+
+/// Returns the value of a field; `None` if the record has none. What the crate `gdal` has no type
+/// for, such as times, is a text.
+#[allow(unsafe_code)]
+fn value_of(path: &Path, feature: &Feature, field: usize) -> Result<Option<FieldValue>> {
+    let number = c_int::try_from(field).unwrap_or(c_int::MAX);
+    // `Feature::field` of the crate `gdal` takes a value that was never set, as in a text format,
+    // for 0 or an empty text.
+    // SAFETY: the feature is live; GDAL checks the number.
+    let is_there =
+        unsafe { gdal_sys::OGR_F_IsFieldSetAndNotNull(feature.c_feature(), number) } != 0;
+    if !is_there {
+        return Ok(None);
+    }
+    let value = match feature.field(field) {
+        Err(GdalError::UnhandledFieldType { .. }) => {
+            let text = feature.field_as_string(field);
+            text.map(|text| text.map(FieldValue::StringValue))
+        }
+        value => value,
+    };
+    value.map_err(|error| messages::error(path, error))
 }
 
 /// Returns a value as it is kept; what is neither a number nor a text, as a text.
