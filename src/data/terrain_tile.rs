@@ -42,6 +42,17 @@ pub struct TilePosition {
     pub row: u32,
 }
 
+impl TilePosition {
+    /// Returns the four tiles of the next finer level in a tile.
+    pub(crate) fn quarters(self) -> [TilePosition; 4] {
+        [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[east, north]| TilePosition {
+            level: self.level.saturating_add(1),
+            column: 2 * self.column + east,
+            row: 2 * self.row + north,
+        })
+    }
+}
+
 impl Tiling {
     /// The finest level of any tiling: a few centimeters.
     pub const MAX_LEVEL: u8 = 28;

@@ -128,7 +128,7 @@ pub(crate) use near_lines::NearLines;
 pub(crate) use nesting::Nesting;
 pub(crate) use point_rim::deciding;
 pub(crate) use pyramid::is_height;
-pub use pyramid::{Level, Pyramid, PyramidRule, TileReport};
+pub use pyramid::{Level, Pyramid, PyramidRule, SurfaceParts, TileReport, ToEarth};
 pub use rasterize::{Canvas, CanvasBlock, CellValue, Dem, DemOfParts, GradientMap, GradientSource};
 pub use rim_rule::RimRule;
 pub(crate) use sample::along_curve;

@@ -95,6 +95,67 @@ fn larger_points_are_asked_in_one_command() {
     assert_left_nothing(&folder);
 }
 
+/// Of points in degrees, with a line across the parts.
+#[test]
+fn terrain_tiles_of_larger_points_are_the_same_files() {
+    let zeros = "0".repeat(80);
+    let half = |from: u32| {
+        let mut text = String::new();
+        for i in 0..9000 {
+            let [x, y] = [from + i % 100, i / 100];
+            let [lon, lat] = [7.0 + f64::from(x) * 1e-5, 46.0 + f64::from(y) * 1e-5];
+            writeln!(
+                text,
+                "{lon:.5}{zeros} {lat:.5}{zeros} {}.{zeros}",
+                x * y % 17
+            )
+            .unwrap();
+        }
+        text
+    };
+    let line = "[[7.000053,46.000042,40],[7.001905,46.00083,60]]";
+    let folder = folder_with(&[
+        ("tiles/west.xyz", &half(0)),
+        ("tiles/east.xyz", &half(100)),
+        ("crest.geojson", &super::geojson(4326, "LineString", line)),
+        ("tmp/kept", ""),
+    ]);
+    let written = |memory: &str, out: &str| {
+        let words = format!(
+            "terrain-tiles tiles/*.xyz --breaklines crest.geojson --a-srs EPSG:4326 \
+             --vertical-offset 0 --max-level 19 --max-error 2 --memory {memory} -o {out}"
+        );
+        let (code, _, said) = run(&folder, &words);
+        assert_eq!(code, Some(0), "{said}");
+        let built_in_files = said.contains("note: the points need more than ");
+        let out = folder.path().join(out);
+        let mut open = vec![out.clone()];
+        let mut files: Vec<(std::path::PathBuf, Vec<u8>)> = Vec::new();
+        while let Some(next) = open.pop() {
+            match next.is_dir() {
+                true => open.extend(std::fs::read_dir(&next).unwrap().map(|e| e.unwrap().path())),
+                false => {
+                    let name = next.strip_prefix(&out).unwrap().to_path_buf();
+                    files.push((name, std::fs::read(&next).unwrap()));
+                }
+            }
+        }
+        files.retain(|(name, _)| !name.ends_with("layer.json"));
+        files.sort();
+        (built_in_files, files)
+    };
+    let (is_in_files, whole) = written("2GB", "whole");
+    assert!(!is_in_files && whole.len() > 20, "{}", whole.len());
+    let (is_in_files, parts) = written(LITTLE, "parts");
+    assert!(is_in_files);
+    assert!(whole == parts);
+    assert_left_nothing(&folder);
+    let names = std::fs::read_dir(folder.path()).unwrap();
+    let is_hidden = |name: &std::ffi::OsString| name.to_string_lossy().starts_with('.');
+    let hidden = names.map(|e| e.unwrap().file_name()).filter(is_hidden);
+    assert_eq!(hidden.count(), 0);
+}
+
 #[test]
 fn memory_that_cannot_be_kept_to_is_noted_or_refused() {
     let folder = points();

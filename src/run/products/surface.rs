@@ -202,6 +202,35 @@ impl SurfaceProduct {
         }
     }
 
+    /// Returns true if an edge of the surface may be on a line.
+    pub(super) fn has_lines(&self) -> Result<bool> {
+        match &self.model {
+            Model::Raster(_) | Model::RasterFile(_) => Ok(false),
+            Model::Parts(parts) => Ok(parts.unjoined()?.has_lines()),
+            Model::Tin(_) | Model::Mesh(_) | Model::Compact(_) => Ok(self.triangles()?.has_lines()),
+        }
+    }
+
+    /// Calls a function with each part of the surface, one after the other: a surface in parts
+    /// stays in its files, of which one is open at a time.
+    pub(super) fn with_each_part(
+        &self,
+        context: &Context,
+        take: &mut dyn FnMut(&dyn Surface) -> Result<()>,
+    ) -> Result<()> {
+        let mut polled = |faces: &dyn Surface| {
+            let polled = Watched::polled(faces, context)?;
+            take(&polled)?;
+            polled.end()
+        };
+        match &self.model {
+            Model::Parts(parts) => {
+                (0..parts.index().parts.len()).try_for_each(|part| polled(&parts.part(part)?))
+            }
+            _ => self.with_faces(context, polled),
+        }
+    }
+
     /// Calls a function with the faces by which heights of a method are computed at positions:
     /// linear ones need no links.
     pub(super) fn with_faces_for<T>(

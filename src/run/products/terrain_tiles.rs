@@ -10,7 +10,7 @@ use flate2::write::GzEncoder;
 
 use super::on_earth::Placing;
 use super::surface::SurfaceProduct;
-use crate::data::{Surface, TerrainTile, TilePosition, Tiling};
+use crate::data::{TerrainTile, TilePosition, Tiling};
 use crate::error::{Error, Result, Setting, wording};
 use crate::io::quantized_mesh::{Extensions, LayerOptions, encode, layer_json, tiles_below};
 use crate::io::tiles_3d::{self, TilesetRoot};
@@ -143,8 +143,9 @@ pub struct LevelReport {
     pub level: u8,
     /// The bound in meters.
     pub bound: f64,
-    /// No vertex of the surface is further from the triangles than this, in meters: the bound, or
-    /// what was measured if that is more. Then a [`Notice::BeyondBound`] says why.
+    /// No vertex of the surface and no line of it is further from the triangles than this, in
+    /// meters: the bound, or what was measured if that is more. Then a [`Notice::BeyondBound`] says
+    /// why.
     pub within: f64,
     /// The number of tiles.
     pub tiles: usize,
@@ -166,8 +167,10 @@ pub struct TerrainTilesReport {
 
 /// Writes a surface as levels of tiles, in a folder that appears at the end or not at all.
 ///
-/// Heights are measured against the triangles as they are written: no vertex of the surface is
-/// further from them than the bound of the level, unless a [`Notice::BeyondBound`] says so.
+/// Heights are measured against the triangles as they are written: no vertex of the surface and no
+/// line of it is further from them than the bound of the level, unless a [`Notice::BeyondBound`]
+/// says so. A surface in parts stays in its files, and its tiles are those of the whole, byte for
+/// byte.
 ///
 /// # Errors
 /// If the coordinate system is not known or cannot be transformed (which needs the feature `proj`,
@@ -175,8 +178,8 @@ pub struct TerrainTilesReport {
 /// a file cannot be written, or the run is canceled.
 ///
 /// # Complexity
-/// O(n log n) for n vertices at each level, on all threads: tiles of a level at the same time.
-/// 200 bytes for each vertex: the coarsest tiles have all of them.
+/// O(n log n) for n vertices, on all threads. In files without a name beside the folder, about 100
+/// bytes for each vertex, which vanish with them; in memory what [`Pyramid::make`] needs.
 pub fn write_terrain_tiles(
     surface: &SurfaceProduct,
     options: &TerrainTilesOptions,
@@ -186,27 +189,24 @@ pub fn write_terrain_tiles(
     let journal = Journal::new(context);
     options.check()?;
     let folder = folder.0;
-    let (mut pyramid, water) = surface.with_faces(context, |faces| {
-        let placing = Placing::new(
-            faces.crs(),
-            options.vertical_offset,
-            &options.transform,
-            &journal,
-        )?;
-        let pyramid = Pyramid::new(
-            faces,
-            &|points| placing.apply(points),
-            &options.rule,
-            context.cancel,
-        )?;
-        let water = match options.format {
-            TerrainFormat::QuantizedMesh => water_of(faces, &placing, context)?,
-            TerrainFormat::Tiles3d => Water::new([]),
-        };
-        faces.ensure_intact()?;
-        placing.warn(&journal);
-        Ok((pyramid, water))
-    })?;
+    let placing = Placing::new(
+        surface.crs(),
+        options.vertical_offset,
+        &options.transform,
+        &journal,
+    )?;
+    let mut pyramid = Pyramid::new(
+        &|take| surface.with_each_part(context, take),
+        &|points| placing.apply(points),
+        &options.rule,
+        folder.around(),
+        context.cancel,
+    )?;
+    let water = match options.format {
+        TerrainFormat::QuantizedMesh => water_of(surface, &placing, context)?,
+        TerrainFormat::Tiles3d => Water::new([]),
+    };
+    placing.warn(&journal);
     let mut layout = Layout::new(options, &pyramid, water, folder.target())?;
     let (levels, deepest) = write_levels(&mut pyramid, &layout, options, &folder, &journal)?;
     layout.measured(&pyramid, &levels, deepest);
@@ -221,15 +221,19 @@ pub fn write_terrain_tiles(
 }
 
 /// Returns the water of a surface, in degrees.
-fn water_of(surface: &dyn Surface, placing: &Placing, context: &Context) -> Result<Water> {
-    let mut triangles = water_triangles(surface, &|| context.check())?;
-    for triangle in &mut triangles {
-        placing.apply(triangle)?;
+fn water_of(surface: &SurfaceProduct, placing: &Placing, context: &Context) -> Result<Water> {
+    if !surface.has_lines()? {
+        return Ok(Water::new([]));
     }
-    let in_plan = triangles
-        .iter()
-        .map(|corners| corners.map(|[x, y, _]| [x, y]));
-    Ok(Water::new(in_plan))
+    surface.with_linked_faces(context, |faces| {
+        let mut triangles = water_triangles(faces, &|| context.check())?;
+        faces.ensure_intact()?;
+        for triangle in &mut triangles {
+            placing.apply(triangle)?;
+        }
+        let in_plan = triangles.iter().map(|corners| corners.map(|[x, y, _]| [x, y]));
+        Ok(Water::new(in_plan))
+    })
 }
 
 /// Writes all tiles, and returns what was measured, and the depth of the deepest skirt.

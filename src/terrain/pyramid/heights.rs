@@ -4,12 +4,13 @@
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
+use super::blocks::{Block, blocks_of};
+use super::keys::keys_of;
 use super::lines::{Crossing, TileLines};
+use super::records::{Record, RecordFile, SortedRecords};
 use super::rule::Level;
-use crate::data::{AT_ONCE, TerrainTile, TilePosition, Tiling};
+use crate::data::{Bounds, TerrainTile, TilePosition, Tiling};
 use crate::error::{Error, Result};
-use crate::terrain::in_order::by_coordinates;
-use crate::terrain::sample::on_curve;
 
 /// The finest step of heights, in meters.
 const LEAST_STEP: f64 = 1.0 / 65_536.0;
@@ -17,89 +18,144 @@ const LEAST_STEP: f64 = 1.0 / 65_536.0;
 /// Up to so many steps, heights are 32-bit floats without rounding.
 const LARGEST_COUNT: f64 = 8_000_000.0;
 
-/// The heights of a surface in the coordinates of a tiling.
+/// The largest number of heights from which the vertices of a tile are chosen at once.
+///
+/// PERF: 200 bytes each. A level from all heights takes about as long as four from few of them.
+const AT_ONCE: usize = 1 << 15;
+
+/// The heights of a surface in the coordinates of a tiling. Those of single vertices are in a file.
 pub(super) struct Heights {
     pub(super) tiling: Tiling,
     /// In the order of their keys.
-    points: Vec<[f64; 3]>,
-    /// For each point, the position of the finest tile that owns it, on a curve through all of
-    /// them that passes each tile of each level once.
-    keys: Vec<u64>,
-    finest: u8,
+    vertices: RecordFile<3>,
+    /// Blocks of these, each in one tile of the finest level.
+    blocks: Vec<Block>,
+    /// See [`Triangles::edges`].
+    edges: SortedRecords<6>,
+    pub(super) bounds: Bounds,
     pub(super) lines: TileLines,
     /// The height around the surface at the coarsest level.
     pub(super) fill: f64,
     /// Heights of the next coarser level where the surface has none, in corners of the grids of the
     /// tiles of the level that comes next.
     pub(super) outside: FxHashMap<[u32; 2], f64>,
+    /// The largest number of heights from which the vertices of a tile are chosen at once.
+    pub(super) at_once: usize,
+    /// See [`gather`](Self::gather).
+    pub(super) few: FxHashMap<TilePosition, Vec<[f64; 3]>>,
 }
 
 impl Heights {
-    /// Sorts the vertices of a surface by the tiles of its finest level. `fill` is their lowest
-    /// height if it is `None`.
+    /// `fill` is the lowest height if it is `None`.
+    ///
+    /// # Errors
+    /// If the vertices cannot be read.
     pub(super) fn new(
-        points: Vec<[f64; 3]>,
-        lines: TileLines,
+        vertices: RecordFile<3>,
+        (lines, edges): (TileLines, SortedRecords<6>),
         tiling: Tiling,
         finest: u8,
         fill: Option<f64>,
-    ) -> Self {
-        let lowest = points.iter().fold(f64::INFINITY, |low, p| low.min(p[2]));
-        let mut keyed: Vec<(u64, [f64; 3])> = points
-            .into_par_iter()
-            .with_min_len(AT_ONCE)
-            .map(|p| (key(owner(p, tiling, finest)), p))
-            .collect();
-        keyed.par_sort_unstable_by(|(a, p), (b, q)| a.cmp(b).then_with(|| by_coordinates(p, q)));
-        let (keys, points) = keyed.into_iter().unzip();
-        Heights {
+    ) -> Result<Self> {
+        let blocks = blocks_of(&vertices, finest)?;
+        let mut bounds = Bounds::default();
+        blocks.iter().for_each(|block| bounds.merge(&block.bounds));
+        Ok(Heights {
             tiling,
-            points,
-            keys,
-            finest,
+            vertices,
+            blocks,
+            edges,
+            bounds,
             lines,
-            fill: fill.unwrap_or(lowest),
+            fill: fill.unwrap_or(bounds.min[2]),
             outside: FxHashMap::default(),
+            at_once: AT_ONCE,
+            few: FxHashMap::default(),
+        })
+    }
+
+    /// The blocks with heights of a tile; if it is of a level up to the finest one, these have no
+    /// others.
+    pub(super) fn blocks_of(&self, at: TilePosition) -> &[Block] {
+        let [first, last] = keys_of(at);
+        let start = self.blocks.partition_point(|block| block.keys[1] < first);
+        let end = self.blocks.partition_point(|block| block.keys[0] <= last);
+        &self.blocks[start..end.max(start)]
+    }
+
+    /// The number of heights of a tile; of one below the finest level, at most so many.
+    pub(super) fn count_of(&self, at: TilePosition) -> usize {
+        self.blocks_of(at).iter().map(|block| block.count).sum()
+    }
+
+    /// Returns the heights that a tile owns: those on its west and south side are its own, too.
+    ///
+    /// # Errors
+    /// If they cannot be read.
+    pub(super) fn heights_of(&self, at: TilePosition) -> Result<Vec<[f64; 3]>> {
+        let blocks = self.blocks_of(at);
+        let mut records = Vec::new();
+        if let [first, ..] = blocks {
+            let count = self.count_of(at) as u64;
+            self.vertices
+                .read(first.start..first.start + count, &mut records)?;
         }
+        let [first, last] = keys_of(at);
+        let own = records
+            .iter()
+            .filter(|(key, _)| (first..=last).contains(key));
+        Ok(own.map(|(_, p)| *p).collect())
     }
 
-    /// All vertices of the surface.
-    pub(super) fn points(&self) -> &[[f64; 3]] {
-        &self.points
+    /// Replaces the records of a list by the heights of a block.
+    ///
+    /// # Errors
+    /// If they cannot be read.
+    pub(super) fn read(&self, block: &Block, records: &mut Vec<Record<3>>) -> Result<()> {
+        let end = block.start + block.count as u64;
+        self.vertices.read(block.start..end, records)
     }
 
-    /// The points that a tile owns: those on its west and south side are its own, too.
-    pub(super) fn points_of(&self, at: TilePosition) -> &[[f64; 3]] {
-        let shift = 2 * u32::from(self.finest - at.level);
-        let first = key(at) << shift;
-        let last = (key(at) + 1) << shift;
-        let [first, last] = [first, last].map(|key| self.keys.partition_point(|&k| k < key));
-        &self.points[first..last]
+    /// Returns the edges on lines of the surface that are in a tile of a level up to the finest
+    /// one.
+    ///
+    /// # Errors
+    /// If they cannot be read.
+    pub(super) fn edges_of(&self, at: TilePosition) -> Result<Vec<Record<6>>> {
+        let [first, last] = keys_of(at);
+        let (first, last) = ((first, f64::NEG_INFINITY), (last, f64::INFINITY));
+        self.edges.between(first, last)
     }
 
     /// The step of a level: the smallest power of two by which the heights of each tile can be
     /// counted, and which 32-bit numbers keep.
     pub(super) fn step(&self, level: &Level) -> Result<f64> {
-        let range = |at: &TilePosition| {
+        let range = |at: &TilePosition| -> Result<[f64; 2]> {
             let mut range = [f64::INFINITY, f64::NEG_INFINITY];
             let mut add = |z: f64| range = [range[0].min(z), range[1].max(z)];
-            self.points_of(*at).iter().for_each(|p| add(p[2]));
+            for Block { bounds, .. } in self.blocks_of(*at) {
+                [bounds.min[2], bounds.max[2]]
+                    .into_iter()
+                    .for_each(&mut add);
+            }
             for far in 0..2 {
                 for axis in 0..2 {
-                    self.along(*at, axis, far).0.iter().for_each(|h| add(h[1]));
+                    let (along, _) = self.along(*at, axis, far)?;
+                    along.iter().for_each(|h| add(h[1]));
                 }
             }
             for i in 0..=level.grid {
                 (0..=level.grid).for_each(|j| add(self.height(level, *at, [i, j])));
             }
-            range
+            Ok(range)
         };
-        let wide = |[low, high]: [f64; 2]| {
+        let wide = |range: Result<[f64; 2]>| {
+            let [low, high] = range?;
             let counted = (high - low) / f64::from(TerrainTile::STEPS - 1);
-            counted.max(low.abs().max(high.abs()) / LARGEST_COUNT)
+            Ok::<f64, Error>(counted.max(low.abs().max(high.abs()) / LARGEST_COUNT))
         };
         let ranges = level.tiles.par_iter().map(range).map(wide);
-        let least = ranges.reduce(|| LEAST_STEP, f64::max);
+        let least: f64 = ranges.try_reduce(|| LEAST_STEP, |a, b| Ok(a.max(b)))?;
         let mut step = LEAST_STEP;
         while step < least {
             step *= 2.0;
@@ -112,11 +168,19 @@ impl Heights {
 
     /// The heights along a side of a tile, with the ends of the side: that where an axis has its
     /// smallest coordinate, or the far one.
-    pub(super) fn along(&self, at: TilePosition, axis: usize, far: u32) -> (&[Crossing], [f64; 2]) {
+    ///
+    /// # Errors
+    /// If they cannot be read.
+    pub(super) fn along(
+        &self,
+        at: TilePosition,
+        axis: usize,
+        far: u32,
+    ) -> Result<(Vec<Crossing>, [f64; 2])> {
         let [min, max] = self.tiling.bounds(at);
         let ends = [min[1 - axis], max[1 - axis]];
         let number = [at.column, at.row][axis] + far;
-        (self.lines.along(axis, at.level, number, ends), ends)
+        Ok((self.lines.along(axis, at.level, number, ends)?, ends))
     }
 
     /// The height in a corner of the grid of a tile.
@@ -143,22 +207,4 @@ impl Heights {
         let numbers = [at.column * level.grid + i, at.row * level.grid + j];
         (numbers, self.lines.crossing(level.of_lines(), numbers))
     }
-}
-
-/// The tile of a level that owns a position.
-pub(super) fn owner([x, y, _]: [f64; 3], tiling: Tiling, level: u8) -> TilePosition {
-    let last = tiling.size(level).map(|size| f64::from(size - 1));
-    let [column, row] = [(x, 0), (y, 1)].map(|(c, axis)| {
-        tiling
-            .in_sides(axis, level, c)
-            .floor()
-            .clamp(0.0, last[axis]) as u32
-    });
-    TilePosition { level, column, row }
-}
-
-/// The position of a tile on a curve through all of its level: that of a tile of the next coarser
-/// level is a quarter of it.
-fn key(at: TilePosition) -> u64 {
-    on_curve([at.column, at.row])
 }

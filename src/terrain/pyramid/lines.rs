@@ -2,7 +2,9 @@
 
 use rustc_hash::FxHashMap;
 
+use super::records::{Record, SortedRecords, Sorter};
 use crate::data::{TerrainTile, Tiling};
+use crate::error::Result;
 use crate::terrain::boxes::Extent;
 use crate::terrain::in_order::by_coordinates;
 use crate::terrain::linear::{gradient, plan, turn};
@@ -17,56 +19,54 @@ pub(super) type Rises = FxHashMap<[u16; 2], [f64; 2]>;
 /// A position along a line, the height there, and how the surface rises along x and along y.
 pub(super) type Crossing = [f64; 4];
 
-/// The heights of a surface along all lines between the tiles of one level, and where they cross.
-///
-/// A line is linear between the heights that are kept: those at all edges that it crosses.
-pub(super) struct TileLines {
-    tiling: Tiling,
-    level: u8,
-    /// By the axis that is constant, and the number of the line; sorted.
-    lines: FxHashMap<(usize, u32), Vec<Crossing>>,
-    /// The heights where two lines cross, and how the surface rises there.
-    crossings: FxHashMap<[u32; 2], [f64; 3]>,
+/// The lines between the tiles of one level.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Lines {
+    pub(super) tiling: Tiling,
+    pub(super) level: u8,
 }
 
-impl TileLines {
-    pub(super) fn new(tiling: Tiling, level: u8) -> Self {
-        TileLines {
-            tiling,
-            level,
-            lines: FxHashMap::default(),
-            crossings: FxHashMap::default(),
-        }
-    }
+/// What triangles of a surface say of lines between tiles.
+#[derive(Default)]
+pub(super) struct OnLines {
+    /// By the keys of lines.
+    pub(super) heights: Vec<Record<4>>,
+    /// The heights where two lines cross, and how the surface rises there.
+    pub(super) crossings: Vec<([u32; 2], [f64; 3])>,
+}
 
-    /// Returns the numbers of the first and the last line between two coordinates. It may be one
-    /// too many at each end.
-    fn numbers(&self, axis: usize, low: f64, high: f64) -> std::ops::RangeInclusive<u32> {
+/// The key of a line: the axis that is constant, and its number.
+fn key_of(axis: usize, number: u32) -> u64 {
+    (axis as u64) << 32 | u64::from(number)
+}
+
+impl Lines {
+    /// Returns the lines that a range of coordinates meets: their numbers and coordinates.
+    fn between(self, axis: usize, low: f64, high: f64) -> impl Iterator<Item = (u32, f64)> {
         let last = f64::from(self.tiling.size(self.level)[axis]);
         let number = |value: f64| self.tiling.in_sides(axis, self.level, value);
         let first = number(low).floor().clamp(0.0, last) as u32;
-        first..=number(high).ceil().clamp(0.0, last) as u32
+        (first..=number(high).ceil().clamp(0.0, last) as u32)
+            .map(move |number| (number, self.tiling.line(axis, self.level, number)))
+            .filter(move |&(_, at)| at >= low && at <= high)
     }
 
-    /// Adds a triangle of the surface. Where lines cross on the border of several triangles, the
-    /// first one counts.
-    pub(super) fn add(&mut self, corners: [[f64; 3]; 3]) {
+    /// Adds what a triangle of the surface says. It does not depend on the corner that is named
+    /// first.
+    pub(super) fn add(self, corners: [[f64; 3]; 3], found: &mut OnLines) {
+        let corners = from_first(corners);
         let Extent { min, max } = Extent::of(corners);
         let rise = rise_of(corners);
         // The lines through the triangle: their numbers and coordinates.
-        let mut inside: [Vec<(u32, f64)>; 2] = [Vec::new(), Vec::new()];
-        for axis in 0..2 {
-            for number in self.numbers(axis, min[axis], max[axis]) {
-                let at = self.tiling.line(axis, self.level, number);
-                if at < min[axis] || at > max[axis] {
-                    continue;
-                }
-                inside[axis].push((number, at));
-                let line = self.lines.entry((axis, number)).or_default();
+        let inside: [Vec<(u32, f64)>; 2] =
+            [0, 1].map(|axis| self.between(axis, min[axis], max[axis]).collect());
+        for (axis, inside) in inside.iter().enumerate() {
+            for &(number, at) in inside {
                 for i in 0..3 {
                     let ends = [corners[i], corners[(i + 1) % 3]];
                     cross(ends, axis, at, &mut |[t, z]| {
-                        line.push([t, z, rise[0], rise[1]])
+                        let height = [t, z, rise[0], rise[1]];
+                        found.heights.push((key_of(axis, number), height));
                     });
                 }
             }
@@ -75,36 +75,97 @@ impl TileLines {
             for &(row, y) in &inside[1] {
                 if let Some(height) = height_in(corners, [x, y]) {
                     let crossing = [height, rise[0], rise[1]];
-                    self.crossings.entry([column, row]).or_insert(crossing);
+                    found.crossings.push(([column, row], crossing));
                 }
             }
         }
     }
 
-    /// Sorts what was added. Where triangles meet at a line, the surface rises as in their mean.
-    pub(super) fn finish(&mut self) {
-        for line in self.lines.values_mut() {
-            line.sort_unstable_by(by_coordinates);
-            let same = |a: &Crossing, b: &Crossing| a[..2] == b[..2];
-            let mean = |all: &[Crossing]| {
-                let [t, z, ..] = all[0];
-                let rise =
-                    [2, 3].map(|k| all.iter().map(|of| of[k]).sum::<f64>() / all.len() as f64);
-                [t, z, rise[0], rise[1]]
-            };
-            *line = line.chunk_by(same).map(mean).collect();
+    /// Passes on the parts of a segment between the lines, the ends of each in the order of their
+    /// coordinates.
+    pub(super) fn divide(self, ends: [[f64; 3]; 2], take: &mut dyn FnMut([[f64; 3]; 2])) {
+        let [p, q] = match by_coordinates(&ends[0], &ends[1]).is_le() {
+            true => ends,
+            false => [ends[1], ends[0]],
+        };
+        let mut cuts = vec![p, q];
+        for axis in 0..2 {
+            let [low, high] = [p[axis].min(q[axis]), p[axis].max(q[axis])];
+            for (_, at) in self.between(axis, low, high) {
+                cross([p, q], axis, at, &mut |[t, z]| {
+                    cuts.push(if axis == 0 { [at, t, z] } else { [t, at, z] });
+                });
+            }
         }
+        // Along the segment: x does not fall from its first end to the last.
+        let is_rising = p[1] <= q[1];
+        cuts.sort_unstable_by(|a, b| {
+            let along_y = match is_rising {
+                true => a[1].total_cmp(&b[1]),
+                false => b[1].total_cmp(&a[1]),
+            };
+            a[0].total_cmp(&b[0]).then(along_y)
+        });
+        cuts.dedup_by(|a, b| a[..2] == b[..2]);
+        cuts.windows(2).for_each(|ends| take([ends[0], ends[1]]));
+    }
+}
+
+/// The corners of a triangle in the same order, the smallest one first.
+fn from_first(corners: [[f64; 3]; 3]) -> [[f64; 3]; 3] {
+    let [a, b, c] = corners;
+    let turned = [[a, b, c], [b, c, a], [c, a, b]];
+    let first = |p: &[[f64; 3]; 3], q: &[[f64; 3]; 3]| by_coordinates(&p[0], &q[0]);
+    turned.into_iter().min_by(first).unwrap_or(corners)
+}
+
+/// The heights of a surface along all lines between the tiles of one level, and where they cross.
+///
+/// A line is linear between the heights that are kept: those at all edges that it crosses.
+pub(super) struct TileLines {
+    level: u8,
+    heights: SortedRecords<4>,
+    crossings: FxHashMap<[u32; 2], [f64; 3]>,
+}
+
+impl TileLines {
+    /// Sorts the heights on lines of a level.
+    ///
+    /// # Errors
+    /// Those of [`SortedRecords::of`].
+    pub(super) fn new(
+        level: u8,
+        heights: Sorter<4>,
+        crossings: FxHashMap<[u32; 2], [f64; 3]>,
+    ) -> Result<Self> {
+        Ok(TileLines {
+            level,
+            heights: SortedRecords::of(heights)?,
+            crossings,
+        })
     }
 
     /// Returns the heights along a line of a level that is not finer, between two positions on it.
-    pub(super) fn along(&self, axis: usize, level: u8, number: u32, ends: [f64; 2]) -> &[Crossing] {
-        let number = number << (self.level - level);
-        let Some(line) = self.lines.get(&(axis, number)) else {
-            return &[];
+    /// Where triangles meet at the line, the surface rises as in their mean.
+    ///
+    /// # Errors
+    /// If they cannot be read.
+    pub(super) fn along(
+        &self,
+        axis: usize,
+        level: u8,
+        number: u32,
+        ends: [f64; 2],
+    ) -> Result<Vec<Crossing>> {
+        let key = key_of(axis, number << (self.level - level));
+        let heights = self.heights.between((key, ends[0]), (key, ends[1]))?;
+        let same = |a: &Record<4>, b: &Record<4>| a.1[..2] == b.1[..2];
+        let mean = |all: &[Record<4>]| {
+            let [t, z, ..] = all[0].1;
+            let rise = [2, 3].map(|k| all.iter().map(|of| of.1[k]).sum::<f64>() / all.len() as f64);
+            [t, z, rise[0], rise[1]]
         };
-        let first = line.partition_point(|&[t, ..]| t < ends[0]);
-        let last = line.partition_point(|&[t, ..]| t <= ends[1]);
-        &line[first..last.max(first)]
+        Ok(heights.chunk_by(same).map(mean).collect())
     }
 
     /// Returns the height where two lines of a level that is not finer cross, and how the surface

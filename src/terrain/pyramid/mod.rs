@@ -1,7 +1,9 @@
 //! Levels of a surface, each of tiles that fit together, for viewers of the earth.
 //!
-//! Each level is simplified from all heights of the surface, not from the next finer level: what is
-//! promised of it holds for the heights that were measured.
+//! What is promised of a level holds for the heights that were measured: each tile is measured
+//! against all of them. The vertices of a tile with many heights are chosen from few of them first,
+//! by which finer tiles are simplified. All others are read from a file, as often as something is
+//! too far off. Neither the surface nor its heights need fit into memory.
 //!
 //! Around the surface, and in its holes, a level has the heights of the next coarser one, and the
 //! coarsest level has one height: so tiles of different levels fit together there, too.
@@ -9,32 +11,39 @@
 //! The borders of tiles come first, each by itself: their vertices are a function of the heights
 //! along the border, so that both tiles at a border have the same ones. Then the vertices of each
 //! tile are chosen as in [`simplify`](super::simplify()), rounded to steps, and triangulated again.
-//! The triangles that viewers will see are measured against all heights, and what is too far off is
-//! inserted.
+//! The triangles that viewers will see are measured against all heights and along the lines of the
+//! surface, and what is too far off is inserted.
 
+mod blocks;
+mod few;
 mod heights;
+mod intake;
+mod keys;
 mod lines;
+mod measure;
 mod normals;
 mod plan;
+mod records;
 mod report;
 mod rule;
 #[cfg(test)]
 mod tests;
 mod tile;
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
 
 use rayon::prelude::*;
 
 use self::heights::Heights;
-use self::lines::TileLines;
-use self::plan::{tiles_of, to_earth};
+use self::intake::{Intake, Triangles};
+pub use self::intake::{SurfaceParts, ToEarth};
 pub use self::report::TileReport;
 pub(crate) use self::rule::is_height;
 pub use self::rule::{Level, PyramidRule};
 use self::tile::Outside;
-use crate::data::{AT_ONCE, Bounds, Surface, TerrainTile, Tiling, area_of, corners};
-use crate::error::{Error, Result};
+use crate::data::{TerrainTile, Tiling};
+use crate::error::Result;
 
 /// A surface that is to be written in levels of tiles.
 pub struct Pyramid {
@@ -43,80 +52,57 @@ pub struct Pyramid {
 }
 
 impl Pyramid {
-    /// Plans the levels of a surface. `convert` turns positions of the surface, some at a time,
-    /// into those of the tiling, with heights in meters.
+    /// Plans the levels of a surface. `parts` passes on its parts, and is called twice. `convert`
+    /// turns their positions, some at a time, into those of the tiling, with heights in meters.
+    /// Files without a name are created in `folder`, and vanish with the result.
+    ///
+    /// The result does not depend on how the surface is divided into parts.
     ///
     /// # Errors
     /// If the rule makes no sense, a position cannot be converted or is beyond all tiles, there are
-    /// no triangles, there would be too many tiles, or the run is canceled.
+    /// no triangles, there would be too many tiles, files cannot be written, or the run is
+    /// canceled.
     ///
     /// # Complexity
-    /// O(n log n) for n vertices, and linear in the tiles. 60 bytes for each vertex.
+    /// O(n log n) for n vertices, and linear in the tiles. About 100 bytes in files for each
+    /// vertex; in memory a few bits of each, and 100 bytes for each tile.
     pub fn new(
-        surface: &dyn Surface,
-        convert: &(dyn Fn(&mut [[f64; 3]]) -> Result<()> + Sync),
+        parts: &SurfaceParts,
+        convert: &ToEarth,
         rule: &PyramidRule,
+        folder: &Path,
         cancel: &AtomicBool,
     ) -> Result<Self> {
         rule.check()?;
-        let used = surface.census().used;
-        let mut positions: Vec<[f64; 3]> = (0..used.len() as u32)
-            .into_par_iter()
-            .with_min_len(AT_ONCE)
-            .map(|vertex| match used[vertex as usize] {
-                true => surface.position(vertex),
-                false => [f64::NAN; 3],
-            })
-            .collect();
-        positions
-            .par_chunks_mut(AT_ONCE)
-            .zip(used.par_chunks(AT_ONCE))
-            .try_for_each(|(positions, used)| to_earth(positions, used, rule.tiling, convert))?;
-        surface.ensure_intact()?;
-        let faces = || corners(surface).map(|(_, face)| face.map(|v| positions[v as usize]));
-
-        // In tiles of the coarsest level.
-        let in_tiles = |[x, y, z]: [f64; 3]| {
-            let [x, y] = [(x, 0), (y, 1)].map(|(c, axis)| rule.tiling.in_sides(axis, 0, c));
-            [x, y, z]
+        let tiling = rule.tiling;
+        let intake = Intake {
+            parts,
+            convert,
+            tiling,
+            folder,
+            cancel,
         };
-        let area: f64 = faces()
-            .map(|face| area_of(face.map(in_tiles)).abs())
-            .filter(|area| area.is_finite())
-            .sum();
-        let count = used.iter().filter(|&&used| used).count();
-        if count == 0 || area <= 0.0 {
-            return Err(Error::format("the surface has no triangles"));
-        }
+        let vertices = intake.vertices()?;
         let in_tile = |level: u8| {
             let side = 1.0 / f64::from(1_u32 << level);
-            count as f64 / area.max(f64::MIN_POSITIVE) * side * side
+            let count = vertices.file.count() as f64;
+            count / vertices.area.max(f64::MIN_POSITIVE) * side * side
         };
         let finest = rule.finest(in_tile);
-        let tiles = tiles_of(faces(), rule.tiling, finest)?;
-
-        let points: Vec<[f64; 3]> = positions
-            .iter()
-            .zip(&used)
-            .filter_map(|(p, used)| used.then_some(*p))
+        let mut levels: Vec<Level> = (0..=finest)
+            .map(|level| Level::new(rule, level, finest))
             .collect();
-        let levels: Vec<Level> = tiles
-            .into_iter()
-            .zip(0..)
-            .map(|(tiles, level)| Level::new(rule, level, finest, tiles))
-            .collect();
-        let finest_lines = levels.iter().map(Level::of_lines).max().unwrap_or(finest);
-        let mut lines = TileLines::new(rule.tiling, finest_lines);
-        for (number, face) in faces().enumerate() {
-            if number % AT_ONCE == 0 && cancel.load(Ordering::Relaxed) {
-                return Err(Error::canceled());
-            }
-            lines.add(face);
+        let of_lines = levels.iter().map(Level::of_lines).max().unwrap_or(finest);
+        let Triangles {
+            tiles,
+            lines,
+            edges,
+        } = intake.triangles(vertices.area, finest, of_lines)?;
+        for (level, tiles) in levels.iter_mut().zip(tiles.of_levels()) {
+            level.tiles = tiles;
         }
-        lines.finish();
-        drop(positions);
         Ok(Pyramid {
-            heights: Heights::new(points, lines, rule.tiling, finest, rule.fill),
+            heights: Heights::new(vertices.file, (lines, edges), tiling, finest, rule.fill)?,
             levels,
         })
     }
@@ -133,13 +119,13 @@ impl Pyramid {
 
     /// Returns the smallest longitude and latitude of the surface, and the largest.
     pub fn bounds(&self) -> [[f64; 2]; 2] {
-        let bounds = Bounds::around(self.heights.points());
+        let bounds = self.heights.bounds;
         [bounds.min, bounds.max].map(|[x, y, _]| [x, y])
     }
 
     /// Returns the lowest height and the highest, in meters, of the surface and around it.
     pub fn heights(&self) -> [f64; 2] {
-        let bounds = Bounds::around(self.heights.points());
+        let bounds = self.heights.bounds;
         [
             bounds.min[2].min(self.heights.fill),
             bounds.max[2].max(self.heights.fill),
@@ -151,11 +137,13 @@ impl Pyramid {
     /// with its level. `end` is called after each level with the sums of its tiles.
     ///
     /// # Errors
-    /// Those of `take` and `end`, and if the run is canceled.
+    /// Those of `take` and `end`, and if heights cannot be read or the run is canceled.
     ///
     /// # Complexity
-    /// O(n log n) for n heights at each level in practice; about 200 bytes for each height of a
-    /// tile.
+    /// O(n log n) for n heights in practice at levels with up to 32768 heights in a tile, and a few
+    /// passes over what is near to an edge at coarser ones. In memory are 200 bytes for each of so
+    /// many heights on each thread, and 24 for each that coarser tiles are chosen from, which is
+    /// one of some dozens.
     pub fn make(
         &mut self,
         take: &(dyn Fn(&Level, TerrainTile, &TileReport) -> Result<()> + Sync),
@@ -163,6 +151,7 @@ impl Pyramid {
         cancel: &AtomicBool,
     ) -> Result<()> {
         self.heights.outside.clear();
+        self.heights.gather(&self.levels, cancel)?;
         for number in 0..self.levels.len() {
             self.levels[number].step = self.heights.step(&self.levels[number])?;
             let level = &self.levels[number];

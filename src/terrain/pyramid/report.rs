@@ -9,9 +9,12 @@ pub struct TileReport {
     pub triangles: usize,
     /// The number of heights of the surface that it was measured against.
     pub heights: usize,
-    /// The largest vertical distance of such a height from the triangles, in meters.
+    /// No such height and no line of the surface is further from the triangles than this, in
+    /// meters. Heights that are certainly within the bound are not measured one by one, so it may
+    /// be more than the largest distance, but not more than the bound if that holds.
     pub largest: f64,
-    /// The number of heights that are further off than the bound, because steps are too large.
+    /// The number of heights that are further off than the bound, because steps are too large, and
+    /// of bends of triangles under lines.
     pub beyond: usize,
 }
 

@@ -128,8 +128,8 @@ impl PyramidRule {
 }
 
 impl Level {
-    /// The level with a bound, of which the curve of the earth takes a part.
-    pub(super) fn new(rule: &PyramidRule, level: u8, finest: u8, tiles: Vec<TilePosition>) -> Self {
+    /// The level with a bound, of which the curve of the earth takes a part. It has no tiles yet.
+    pub(super) fn new(rule: &PyramidRule, level: u8, finest: u8) -> Self {
         let bound = rule.bound(level, finest);
         let (grid, curve) = rule.grid(level, bound);
         Level {
@@ -139,7 +139,7 @@ impl Level {
             curve,
             step: 0.0,
             grid,
-            tiles,
+            tiles: Vec::new(),
         }
     }
 

@@ -4,9 +4,10 @@ use std::sync::atomic::AtomicBool;
 use rustc_hash::FxHashMap;
 
 use super::lines::{chain, height_on};
-use super::{Level, Pyramid, PyramidRule, TileReport};
+use super::{Level, Pyramid, PyramidRule, TileReport, ToEarth};
+use crate::Result;
 use crate::crs::geocentric;
-use crate::data::{Mesh, TerrainTile, TilePosition, Tiling};
+use crate::data::{EdgeKind, Mesh, Surface, TerrainTile, TilePosition, Tiling, corners, faces};
 use crate::terrain::{Tin, TinBuilder};
 use testkit::random::Random;
 
@@ -35,8 +36,24 @@ fn surface(seed: u64, count: usize, on_lines: bool) -> Tin {
     builder.build().unwrap()
 }
 
+fn planned(parts: &[&dyn Surface], convert: &ToEarth, rule: &PyramidRule) -> Result<Pyramid> {
+    let each = |take: &mut dyn FnMut(&dyn Surface) -> Result<()>| {
+        parts.iter().try_for_each(|&part| take(part))
+    };
+    Pyramid::new(&each, convert, rule, &std::env::temp_dir(), &GO_ON)
+}
+
 fn pyramid(surface: &Tin, rule: &PyramidRule) -> Pyramid {
-    Pyramid::new(surface, &|_| Ok(()), rule, &GO_ON).unwrap()
+    let mut pyramid = planned(&[surface], &|_| Ok(()), rule).unwrap();
+    // So that tiles of coarse levels have more.
+    pyramid.heights.at_once = 200;
+    pyramid
+}
+
+/// The heights of a surface.
+fn vertices(surface: &dyn Surface) -> Vec<[f64; 3]> {
+    let numbers = 0..surface.vertex_count() as u32;
+    numbers.map(|vertex| surface.position(vertex)).collect()
 }
 
 /// The levels that are judged: coarser ones are grids that follow the earth.
@@ -226,7 +243,8 @@ fn the_bound_holds_at_each_height_of_each_level() {
         let surface = surface(5, 700, false);
         let mut pyramid = pyramid(&surface, &rule);
         let levels_of_tiles = collect(&mut pyramid);
-        let points: Vec<[f64; 3]> = pyramid.heights.points().to_vec();
+        assert!(!pyramid.heights.few.is_empty());
+        let points = vertices(&surface);
         for level in levels(&pyramid) {
             let bound = pyramid.levels()[level].bound;
             let tiles = &levels_of_tiles[level];
@@ -383,10 +401,8 @@ fn the_range_of_a_tile_is_its_own() {
 fn what_cannot_be_tiled_is_refused() {
     let corners = vec![[7.0, 46.0, 1.0], [8.0, 46.0, 1.0], [7.0, 47.0, 1.0]];
     let mesh = Mesh::new(corners, vec![[0, 1, 2]], &[], None).unwrap();
-    let refused = |convert: &(dyn Fn(&mut [[f64; 3]]) -> crate::Result<()> + Sync),
-                   rule: PyramidRule| {
-        let planned = Pyramid::new(&mesh, convert, &rule, &GO_ON);
-        planned.err().unwrap().to_string()
+    let refused = |convert: &ToEarth, rule: PyramidRule| {
+        planned(&[&mesh], convert, &rule).err().unwrap().to_string()
     };
     let rule = PyramidRule::default();
     let far = |points: &mut [[f64; 3]]| {
@@ -416,4 +432,147 @@ fn what_cannot_be_tiled_is_refused() {
         ..rule
     };
     assert!(refused(&here, bound).contains("is not a bound"));
+}
+
+/// The triangles of a surface as several, with other numbers and other first corners.
+fn divided(surface: &dyn Surface, count: u32) -> Vec<Mesh> {
+    let part = |of_part: u32| {
+        let mut numbers: FxHashMap<u32, u32> = FxHashMap::default();
+        let mut positions = Vec::new();
+        let mut triangles: Vec<[u32; 3]> = Vec::new();
+        for (face, corners) in corners(surface).filter(|(face, _)| face % count == of_part) {
+            let turned = [0, 1, 2].map(|k| corners[(k + face as usize) % 3]);
+            triangles.push(turned.map(|vertex| {
+                *numbers.entry(vertex).or_insert_with(|| {
+                    positions.push(surface.position(vertex));
+                    positions.len() as u32 - 1
+                })
+            }));
+        }
+        triangles.reverse();
+        Mesh::new(positions, triangles, &[], None).unwrap()
+    };
+    (0..count).map(part).collect()
+}
+
+#[test]
+fn parts_of_a_surface_have_the_tiles_of_the_whole() {
+    for (seed, rule) in (70..).zip([rules()[1], MERCATOR]) {
+        let surface = surface(seed, 900, seed % 2 == 0);
+        let whole = collect(&mut pyramid(&surface, &rule));
+        for count in [2, 7] {
+            let meshes = divided(&surface, count);
+            let parts: Vec<&dyn Surface> = meshes.iter().map(|part| part as &dyn Surface).collect();
+            let mut divided = planned(&parts, &|_| Ok(()), &rule).unwrap();
+            divided.heights.at_once = 200;
+            assert!(collect(&mut divided) == whole, "{seed} {count}");
+        }
+    }
+}
+
+/// Tiles that are made from few heights have about as many vertices as those from all.
+#[test]
+fn few_heights_choose_nearly_as_few_vertices() {
+    let rule = rules()[1];
+    let surface = surface(12, 6000, false);
+    let counts = [200, usize::MAX].map(|at_once| {
+        let mut pyramid = pyramid(&surface, &rule);
+        pyramid.heights.at_once = at_once;
+        let levels = collect(&mut pyramid);
+        let coarse = 9..levels.len() - 1;
+        let tiles = levels[coarse].iter().flatten();
+        tiles.map(|(_, report)| report.vertices).sum::<usize>()
+    });
+    let [few, all] = counts;
+    assert!(few as f64 <= 1.1 * all as f64, "{few} {all}");
+}
+
+/// Between the vertices of a breakline, too.
+#[test]
+fn the_bound_holds_along_lines() {
+    for (seed, rule) in (90..).zip(rules().into_iter().chain([MERCATOR])) {
+        let mut random = Random(seed);
+        let mut builder = TinBuilder::default();
+        for [x, y] in [[0.0, 0.0], [SIDE, 0.0], [0.0, SIDE], [SIDE, SIDE]] {
+            builder.add_points(&[7.0 + x], &[46.0 + y], &[300.0]);
+        }
+        for number in 0..300 {
+            // Not nearer to the crests than a few steps of level 7.
+            let band = [0.0, 0.4, 0.8][number % 3];
+            let [x, y] = [random.unit(), band + 0.17 * random.unit()].map(|along| along * SIDE);
+            builder.add_points(&[7.0 + x], &[46.0 + y], &[random.below(9) as f64]);
+        }
+        // Crests through all of it.
+        for along in [0.3, 0.7] {
+            let at = |t: f64, bend: f64| [7.0 + t * SIDE, 46.0 + (along + bend) * SIDE, 420.0];
+            builder.add_breakline(&[at(0.02, 0.0), at(0.6, 0.05), at(0.97, -0.1)]);
+        }
+        let surface = builder.build().unwrap();
+        let mut pyramid = pyramid(&surface, &rule);
+        let levels_of_tiles = collect(&mut pyramid);
+        let constrained: Vec<[[f64; 3]; 2]> = faces(&surface)
+            .flat_map(|face| {
+                let on_line = (0..3).filter(move |&i| face.edges[i] == EdgeKind::Breakline);
+                on_line.map(move |i| [(i + 1) % 3, (i + 2) % 3].map(|k| face.corners[k]))
+            })
+            .map(|ends| ends.map(|vertex| surface.position(vertex)))
+            .collect();
+        assert!(constrained.len() >= 8);
+        let mut judged = 0;
+        for level in levels(&pyramid) {
+            let bound = pyramid.levels()[level].bound;
+            for (tile, report) in &levels_of_tiles[level] {
+                assert_eq!(report.beyond, 0, "{:?} {report:?}", tile.at);
+                let [min, max] = rule.tiling.bounds(tile.at);
+                for [p, q] in &constrained {
+                    for _ in 0..25 {
+                        let t = random.unit();
+                        let [x, y, z] = [0, 1, 2].map(|k| p[k] + t * (q[k] - p[k]));
+                        if x < min[0] || x > max[0] || y < min[1] || y > max[1] {
+                            continue;
+                        }
+                        let steps = |c: f64, k: usize| (c - min[k]) / (max[k] - min[k]) * 32_767.0;
+                        let height = height_of(tile, [steps(x, 0), steps(y, 1)]).unwrap();
+                        assert!((height - z).abs() <= bound, "{level} {height} {z} {bound}");
+                        judged += 1;
+                    }
+                }
+            }
+        }
+        assert!(judged > 500, "{judged}");
+    }
+}
+
+/// Heights that are next to a border, by less than a step and by some.
+#[test]
+fn the_bound_holds_next_to_borders() {
+    let rule = PyramidRule {
+        finest: Some(13),
+        max_error: Some(3.0),
+        ..PyramidRule::default()
+    };
+    for seed in 0..4 {
+        let mut random = Random(seed);
+        let mut builder = TinBuilder::default();
+        let line = Tiling::Geographic.line(1, 13, 6190);
+        let step = SIDE / 8.0 / 32_767.0;
+        for [x, y] in [[0.0, -0.03], [0.1, -0.03], [0.0, 0.03], [0.1, 0.03]] {
+            builder.add_points(&[7.0 + x], &[line + y], &[0.0]);
+        }
+        for _ in 0..900 {
+            let x = 0.1 * random.unit();
+            let across = 6.0 * (random.unit() - 0.5);
+            let z = 40.0 * (x * 700.0).sin() + 25.0 * (x * 1900.0).cos();
+            builder.add_points(&[7.0 + x], &[line + across * step], &[z]);
+        }
+        let surface = builder.build().unwrap();
+        for (tile, report) in collect(&mut pyramid(&surface, &rule)).iter().flatten() {
+            let is_judged = tile.at.level >= 12;
+            assert!(
+                !is_judged || report.beyond == 0,
+                "{seed} {:?} {report:?}",
+                tile.at
+            );
+        }
+    }
 }

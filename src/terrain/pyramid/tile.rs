@@ -1,8 +1,7 @@
 //! One tile: its vertices are chosen, rounded to steps, and measured against all heights.
 
+use std::borrow::Cow;
 use std::sync::atomic::AtomicBool;
-
-use rustc_hash::FxHashMap;
 
 use super::heights::Heights;
 use super::lines::{Chain, Rises, chain, height_along, height_on, in_steps, rises, steps_between};
@@ -20,12 +19,16 @@ use crate::triangulation::{Delaunay, Location};
 
 const STEPS: u16 = TerrainTile::STEPS;
 
+/// How often the vertices of a tile are chosen again from few heights, with those that were too far
+/// off, before these are only inserted.
+const CHOICES: usize = 4;
+
 /// A tile while its vertices are chosen.
-struct Work<'a> {
-    level: &'a Level,
-    /// The heights to be near to: steps along x and y, height in meters.
-    heights: Vec<[f64; 3]>,
-    triangulation: Delaunay<Terrain, 3>,
+pub(super) struct Work<'a> {
+    pub(super) all: &'a Heights,
+    pub(super) level: &'a Level,
+    pub(super) at: TilePosition,
+    pub(super) triangulation: Delaunay<Terrain, 3>,
 }
 
 /// The vertices that a tile has in any case: their positions and heights in steps.
@@ -46,30 +49,62 @@ pub(super) fn tile(
     at: TilePosition,
     cancel: &AtomicBool,
 ) -> Result<(TerrainTile, TileReport, Outside)> {
+    let frame = Frame::of(all, level, at)?;
+    let few = all.few.get(&at);
+    let from = few.map_or_else(|| all.heights_of(at).map(Cow::Owned), |few| Ok(few.into()))?;
     let [min, max] = all.tiling.bounds(at);
-    let points = all.points_of(at);
-    let heights: Vec<[f64; 3]> = points
-        .iter()
-        .map(|&[x, y, z]| {
-            let [u, v] = [(x, 0), (y, 1)].map(|(c, axis)| steps_between(c, min[axis], max[axis]));
-            let [u, v] = searched([u, v]);
-            [u, v, z]
-        })
-        .collect();
-    let frame = Frame::of(all, level, at);
-    let candidate = |&[u, v, z]: &[f64; 3]| {
+    let candidate = |&p: &[f64; 3]| {
+        let [u, v, z] = in_tile(p, [min, max]);
         let [u, v] = [u, v].map(inner);
-        [f64::from(u), f64::from(v), z]
+        ([f64::from(u), f64::from(v), z], false)
     };
-    let mut sites: Vec<([f64; 3], bool)> = frame
-        .vertices
-        .iter()
-        .map(|&([u, v], height)| {
-            let height = f64::from(height) * level.step;
-            ([f64::from(u), f64::from(v), height], true)
-        })
-        .chain(heights.iter().map(|p| (candidate(p), false)))
-        .collect();
+    let of_frame = frame.vertices.iter().map(|&([u, v], height)| {
+        let height = f64::from(height) * level.step;
+        ([f64::from(u), f64::from(v), height], true)
+    });
+    let mut sites: Vec<Site> = of_frame.chain(from.iter().map(candidate)).collect();
+    drop(from);
+    let mut choices = if few.is_some() { CHOICES } else { 1 };
+    let (mut work, found) = loop {
+        let work = Work {
+            all,
+            level,
+            at,
+            triangulation: chosen(&mut sites, level, cancel)?,
+        };
+        let found = work.measure(true, cancel)?;
+        choices -= 1;
+        if choices == 0 || found.worst.is_empty() {
+            break (work, found);
+        }
+        let more = found.candidates();
+        sites.extend(more.map(|([u, v], z)| ([f64::from(u), f64::from(v), z], false)));
+    };
+    drop(sites);
+    let found = work.repair(found, cancel)?;
+    let mut tile = work.finish(at)?;
+    tile.normals = normals(&tile, all.tiling, &frame.rises);
+    let report = TileReport {
+        vertices: tile.vertices.len(),
+        triangles: tile.triangles.len(),
+        heights: all.count_of(at),
+        largest: found.largest,
+        beyond: found.beyond,
+    };
+    let outside = finer.map_or_else(Vec::new, |finer| work.outside(all, finer, &tile));
+    Ok((tile, report, outside))
+}
+
+/// A position in steps with its height in meters, and whether it stays in any case.
+type Site = ([f64; 3], bool);
+
+/// Returns the triangulation of those sites that are needed, with heights in whole steps. The sites
+/// are sorted, and each position is kept once.
+fn chosen(
+    sites: &mut Vec<Site>,
+    level: &Level,
+    cancel: &AtomicBool,
+) -> Result<Delaunay<Terrain, 3>> {
     sites.sort_unstable_by(|(p, p_stays), (q, q_stays)| {
         let axis = |k: usize| p[k].total_cmp(&q[k]);
         axis(0)
@@ -81,30 +116,32 @@ pub(super) fn tile(
     let stay: Vec<u32> = (0..sites.len() as u32)
         .filter(|&site| sites[site as usize].1)
         .collect();
-    let positions: Vec<[f64; 3]> = sites.into_iter().map(|(p, _)| p).collect();
+    let positions: Vec<[f64; 3]> = sites.iter().map(|(p, _)| *p).collect();
     let bound = (level.allowance - level.step / 2.0).max(level.allowance / 2.0);
     let chosen = choose_around(positions, &stay, bound, cancel)?;
     let round = |p| rounded(p, level.step);
     let vertices: Vec<[f64; 3]> = chosen.into_iter().map(round).collect();
     let (triangulation, _) = Delaunay::from_points(Terrain::default(), &vertices)
         .map_err(|e| Error::format(e.to_string()))?;
-    let mut work = Work {
-        level,
-        heights,
-        triangulation,
-    };
-    let mut report = work.repair(cancel)?;
-    let mut tile = work.finish(at)?;
-    tile.normals = normals(&tile, all.tiling, &frame.rises);
-    report.vertices = tile.vertices.len();
-    report.triangles = tile.triangles.len();
-    let outside = finer.map_or_else(Vec::new, |finer| work.outside(all, finer, &tile));
-    Ok((tile, report, outside))
+    Ok(triangulation)
 }
 
-/// A step inside of the tile: only vertices of borders are on them.
-fn inner(steps: f64) -> u16 {
-    (steps.round() as u16).clamp(1, STEPS - 1)
+/// Returns a position in steps of a tile, given the bounds of the tile.
+pub(super) fn in_tile([x, y, z]: [f64; 3], [min, max]: [[f64; 2]; 2]) -> [f64; 3] {
+    let [u, v] = [(x, 0), (y, 1)].map(|(c, axis)| steps_between(c, min[axis], max[axis]));
+    let [u, v] = searched([u, v]);
+    [u, v, z]
+}
+
+/// How many steps from the borders the vertices inside of a tile are, at least.
+///
+/// Between a border and a vertex that is one step from it, a triangle is as thin as what rounding
+/// moves: a height there is on the wrong side of it, and no vertex can be added for it.
+const INSIDE: u16 = 8;
+
+/// A step inside of the tile: only vertices of borders are near to them.
+pub(super) fn inner(steps: f64) -> u16 {
+    (steps.round() as u16).clamp(INSIDE, STEPS - INSIDE)
 }
 
 /// Returns how often the steps of a level can be halved for a tile, so that the range of heights
@@ -127,13 +164,13 @@ fn grid_steps(tiling: Tiling, axis: usize, at: TilePosition, cells: u32) -> Vec<
 }
 
 /// A position with its height in whole steps.
-fn rounded([u, v, z]: [f64; 3], step: f64) -> [f64; 3] {
+pub(super) fn rounded([u, v, z]: [f64; 3], step: f64) -> [f64; 3] {
     [u, v, (z / step).round() * step]
 }
 
 impl Frame {
     /// The vertices of the borders, and those of a grid that follows the earth.
-    fn of(all: &Heights, level: &Level, at: TilePosition) -> Self {
+    fn of(all: &Heights, level: &Level, at: TilePosition) -> Result<Self> {
         let cells = level.grid;
         let height = |i: u32, j: u32| (all.height(level, at, [i, j]) / level.step).round() as i32;
         let steps = [0, 1].map(|axis| {
@@ -165,8 +202,8 @@ impl Frame {
                 let fixed: Chain = along_side()
                     .map(|(k, &along)| (along, height(corner(k)[0], corner(k)[1])))
                     .collect();
-                let (crossings, ends) = all.along(at, axis, far);
-                let crossings = in_steps(crossings, ends);
+                let (crossings, ends) = all.along(at, axis, far)?;
+                let crossings = in_steps(&crossings, ends);
                 let heights: Vec<[f64; 2]> = crossings.iter().map(|&[t, z, ..]| [t, z]).collect();
                 let chain = chain(&heights, &fixed, level.step, level.allowance);
                 for (&(along, z), rise) in chain.iter().zip(rises(&crossings, &chain)) {
@@ -188,66 +225,11 @@ impl Frame {
             let column = (1..cells).map(|j| (step(j), height(i, j)));
             frame.vertices.extend(column);
         }
-        frame
+        Ok(frame)
     }
 }
 
 impl Work<'_> {
-    /// Inserts the worst height of each triangle until none is further off than the bound.
-    fn repair(&mut self, cancel: &AtomicBool) -> Result<TileReport> {
-        loop {
-            if cancel.load(std::sync::atomic::Ordering::Relaxed) {
-                return Err(Error::canceled());
-            }
-            let (mut beyond, mut largest) = (0, 0.0_f64);
-            let mut worst: FxHashMap<CellId, (f64, [u16; 2], f64)> = FxHashMap::default();
-            let mut near = None;
-            for &[u, v, z] in &self.heights {
-                let location = self.triangulation.locate(&[u, v, z], near);
-                near = location.cell(&self.triangulation).or(near);
-                let Some((height, cell)) = self.height_at(location, [u, v]) else {
-                    continue;
-                };
-                let off = (height - z).abs();
-                largest = largest.max(off);
-                // A margin for the roundings of viewers.
-                if off <= self.level.allowance * (1.0 - 1e-9) {
-                    continue;
-                }
-                beyond += usize::from(off > self.level.allowance);
-                let Some(cell) = cell else {
-                    continue;
-                };
-                let entry = worst.entry(cell).or_insert((0.0, [0; 2], 0.0));
-                let candidate = (off, [u, v].map(inner), z);
-                let is_worse = off
-                    .total_cmp(&entry.0)
-                    .then(candidate.1.cmp(&entry.1))
-                    .is_gt();
-                if is_worse {
-                    *entry = candidate;
-                }
-            }
-            let mut candidates: Vec<([u16; 2], f64)> =
-                worst.into_values().map(|(_, at, z)| (at, z)).collect();
-            candidates.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
-            let before = self.triangulation.tds().vertex_count();
-            for ([u, v], z) in candidates {
-                let p = rounded([f64::from(u), f64::from(v), z], self.level.step);
-                let inserted = self.triangulation.insert(p);
-                inserted.map_err(|e| Error::format(e.to_string()))?;
-            }
-            if self.triangulation.tds().vertex_count() == before {
-                return Ok(TileReport {
-                    heights: self.heights.len(),
-                    largest,
-                    beyond,
-                    ..TileReport::default()
-                });
-            }
-        }
-    }
-
     /// The heights of the tile where the surface has none.
     fn outside(&self, all: &Heights, finer: &Level, tile: &TerrainTile) -> Outside {
         let cells = 2 * finer.grid;
@@ -293,7 +275,11 @@ impl Work<'_> {
 
     /// The height of the triangles at a position that was located, with the triangle there unless
     /// it is a vertex.
-    fn height_at(&self, location: Location, at: [f64; 2]) -> Option<(f64, Option<CellId>)> {
+    pub(super) fn height_at(
+        &self,
+        location: Location,
+        at: [f64; 2],
+    ) -> Option<(f64, Option<CellId>)> {
         match location {
             Location::Vertex(vertex) => Some((self.triangulation.point(vertex)[2], None)),
             Location::Cell { cell, .. } => {

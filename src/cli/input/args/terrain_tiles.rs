@@ -31,10 +31,11 @@ pub(crate) enum TerrainFormatArg {
 ///
 /// The surface is a TIN (.tin, .ply, .obj), a DEM (a surface between the centers of its cells) or
 /// points, of which a TIN is built by the options below. It is written as quantized meshes with a
-/// `layer.json`, in a folder that a web server can serve as it is. Each level is simplified from
-/// the surface itself: no vertex of the surface is further from the triangles of a level than its
-/// bound, which is measured on the tiles as they are written. Where it does not hold, a warning
-/// says which one does. Tiles of a level have the same vertices on a common border.
+/// `layer.json`, in a folder that a web server can serve as it is. No vertex of the surface and no
+/// line of it is further from the triangles of a level than its bound, which is measured on the
+/// tiles as they are written. Where it does not hold, a warning says which one does. Tiles of a
+/// level have the same vertices on a common border. Points that would not fit into memory are made
+/// to a TIN in files first, and the tiles are the same.
 ///
 /// Positions are transformed to longitude and latitude by PROJ, in a build that has it. Heights
 /// must be above the ellipsoid of WGS 84, see --vertical-offset.

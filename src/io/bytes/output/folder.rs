@@ -84,6 +84,11 @@ impl OutputFolder {
         &self.target
     }
 
+    /// Returns the folder around it.
+    pub(crate) fn around(&self) -> &Path {
+        folder_of(&self.target)
+    }
+
     /// Writes a file, given its path in the folder; folders around it are created.
     ///
     /// # Errors

@@ -184,6 +184,10 @@ impl Surface for UnjoinedTin<'_> {
         }
     }
 
+    fn has_lines(&self) -> bool {
+        self.parts.iter().any(|part| part.tin.has_lines())
+    }
+
     fn is_fragment(&self, face: u32) -> bool {
         self.of_face(face)
             .is_some_and(|(part, face)| part.tin.is_fragment(face))
