@@ -6,10 +6,10 @@ use super::boxes::{Boxed, Boxes, Extent};
 use crate::data::{AT_ONCE, EdgeKind, Surface, WaterMask};
 use crate::error::Result;
 
-/// Returns the triangles of a surface that are water. Triangles that are connected without a shore or
-/// a bank between them are water if all of them are at one height, or if they reach a bank, have no
-/// vertices but those of banks, shores and lines of a cut, and do not reach the rim. So an island
-/// is land if it has a vertex of another height.
+/// Returns the triangles of a surface that are water. Triangles that are connected without a shore
+/// or a bank between them are water if all of them are at one height, or if they reach a bank, have
+/// no vertices but those of banks, shores and lines of a cut, and do not reach the rim. So an
+/// island is land if it has a vertex of another height.
 ///
 /// `go_on` is called now and then, and ends the search by an error.
 ///
@@ -65,8 +65,8 @@ fn is_shore(kind: EdgeKind) -> bool {
 struct Shores {
     /// The faces beside these edges.
     faces: Vec<u32>,
-    /// The positions of their vertices, and of those where water may be cut: a vertex that parts of a
-    /// surface share has a number in each part.
+    /// The positions of their vertices, and of those where water may be cut: a vertex that parts of
+    /// a surface share has a number in each part.
     vertices: HashSet<[u64; 3]>,
 }
 

@@ -152,11 +152,11 @@ fn a_damaged_file_takes_little_memory_and_leaves_nothing() {
         let verb = match extension {
             "fgb" | "gpkg" | "geojson" => {
                 layer::write_lines(&path, &lines()).unwrap();
-                ["tin", &name, "-o", "out.ply"].as_slice()
+                vec!["tin", &name, "-o", "out.ply"]
             }
             _ => {
                 mesh::write(&path, &field(Some("EPSG:25832"))).unwrap();
-                ["contour", &name, "--interval=1", "-o", "out.geojson"].as_slice()
+                vec!["contour", &name, "--interval=1", "-o", "out.geojson"]
             }
         };
         let bytes = std::fs::read(&path).unwrap();
@@ -166,7 +166,7 @@ fn a_damaged_file_takes_little_memory_and_leaves_nothing() {
                 .current_dir(folder.path())
                 .args(["-c", "ulimit -v \"$0\" && exec \"$@\"", MEMORY])
                 .arg(assert_cmd::cargo::cargo_bin!("breakline"))
-                .args(verb)
+                .args(&verb)
                 .arg("--threads=1")
                 .output()
                 .unwrap();

@@ -42,9 +42,9 @@ const CONDITIONS: &[&str] = &[
     "NOT height IS NULL AND (count IS NULL OR NOT count = 0)",
 ];
 
-/// Conditions that ours answer as SQL does: what is compared with a missing value is unknown, and so
-/// is its opposite, by which nothing is chosen. GDAL 3.6 takes it for false, and its opposite for
-/// true.
+/// Conditions that ours answer as SQL does: what is compared with a missing value is unknown, and
+/// so is its opposite, by which nothing is chosen. GDAL 3.6 takes it for false, and its opposite
+/// for true.
 const OF_MISSING: &[&str] = &["NOT (height > 2)", "NOT (count IN (3, 5))"];
 
 fn ours(path: &Path, text: &str) -> Vec<f64> {

@@ -7,6 +7,7 @@
 //! `docs/how-to-add-a-format.md`.
 
 mod format;
+mod rows;
 mod table;
 
 use std::fmt::Write;
@@ -17,8 +18,8 @@ use std::path::{Path, PathBuf};
 use self::format::KnownBy;
 pub use self::format::{Content, Format, Holding, Product};
 pub(crate) use self::format::{FormatReader, PointWriter, WriteHeights, Writers};
+pub(crate) use self::rows::with_gdal;
 pub use self::table::FORMATS;
-pub(crate) use self::table::with_gdal;
 use crate::error::{Error, Result};
 use crate::io::bytes::appended::appended;
 

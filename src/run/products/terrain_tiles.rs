@@ -231,7 +231,9 @@ fn water_of(surface: &SurfaceProduct, placing: &Placing, context: &Context) -> R
         for triangle in &mut triangles {
             placing.apply(triangle)?;
         }
-        let in_plan = triangles.iter().map(|corners| corners.map(|[x, y, _]| [x, y]));
+        let in_plan = triangles
+            .iter()
+            .map(|corners| corners.map(|[x, y, _]| [x, y]));
         Ok(Water::new(in_plan))
     })
 }

@@ -180,7 +180,7 @@ mod tests {
                     (random.below(keys), [x, y, z])
                 })
                 .collect();
-            records.sort_unstable_by(|a, b| a.0.cmp(&b.0));
+            records.sort_unstable_by_key(|record| record.0);
             let mut blocks = Blocks::new(6);
             records.chunks(999).for_each(|some| blocks.extend(some));
             let blocks = blocks.finish();

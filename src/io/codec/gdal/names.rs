@@ -170,8 +170,8 @@ const HIDDEN: &str = "***";
 static SECRETS: Mutex<Option<HashMap<String, String>>> = Mutex::new(None);
 
 /// Returns the name of a data set without its passwords, with which it can be opened as long as
-/// this process runs: so no message, no output and no file of a job can contain them. Other names are
-/// returned as they are.
+/// this process runs: so no message, no output and no file of a job can contain them. Other names
+/// are returned as they are.
 pub fn without_secrets(text: &str) -> Cow<'_, str> {
     if start(text) == 0 {
         return Cow::Borrowed(text);
