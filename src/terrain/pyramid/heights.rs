@@ -20,7 +20,7 @@ const LARGEST_COUNT: f64 = 8_000_000.0;
 
 /// The largest number of heights from which the vertices of a tile are chosen at once.
 ///
-/// PERF: 200 bytes each. A level from all heights takes about as long as four from few of them.
+/// PERF: 200 bytes each, on each thread.
 const AT_ONCE: usize = 1 << 15;
 
 /// The heights of a surface in the coordinates of a tiling. Those of single vertices are in a file.

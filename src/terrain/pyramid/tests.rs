@@ -305,6 +305,11 @@ fn a_tile_is_covered_once() {
     let levels_of_tiles = collect(&mut pyramid);
     for level in levels(&pyramid) {
         for (tile, _) in &levels_of_tiles[level] {
+            // No triangle along a border is as thin as rounding.
+            for &[x, y, _] in &tile.vertices {
+                let apart = [x, y].map(|c| c.min(TerrainTile::STEPS - c));
+                assert!(apart.contains(&0) || apart.iter().all(|&steps| steps >= 8));
+            }
             let mut doubled = 0;
             let mut edges: FxHashMap<[u32; 2], i32> = FxHashMap::default();
             for face in &tile.triangles {
@@ -540,39 +545,5 @@ fn the_bound_holds_along_lines() {
             }
         }
         assert!(judged > 500, "{judged}");
-    }
-}
-
-/// Heights that are next to a border, by less than a step and by some.
-#[test]
-fn the_bound_holds_next_to_borders() {
-    let rule = PyramidRule {
-        finest: Some(13),
-        max_error: Some(3.0),
-        ..PyramidRule::default()
-    };
-    for seed in 0..4 {
-        let mut random = Random(seed);
-        let mut builder = TinBuilder::default();
-        let line = Tiling::Geographic.line(1, 13, 6190);
-        let step = SIDE / 8.0 / 32_767.0;
-        for [x, y] in [[0.0, -0.03], [0.1, -0.03], [0.0, 0.03], [0.1, 0.03]] {
-            builder.add_points(&[7.0 + x], &[line + y], &[0.0]);
-        }
-        for _ in 0..900 {
-            let x = 0.1 * random.unit();
-            let across = 6.0 * (random.unit() - 0.5);
-            let z = 40.0 * (x * 700.0).sin() + 25.0 * (x * 1900.0).cos();
-            builder.add_points(&[7.0 + x], &[line + across * step], &[z]);
-        }
-        let surface = builder.build().unwrap();
-        for (tile, report) in collect(&mut pyramid(&surface, &rule)).iter().flatten() {
-            let is_judged = tile.at.level >= 12;
-            assert!(
-                !is_judged || report.beyond == 0,
-                "{seed} {:?} {report:?}",
-                tile.at
-            );
-        }
     }
 }
