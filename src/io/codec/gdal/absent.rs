@@ -71,7 +71,7 @@ pub fn find_driver(
 
 fn missing(what: &str, path: &Path) -> Error {
     let error = match names::is_name(path) {
-        true => "a name that GDAL opens, without which this program was built".to_owned(),
+        true => "this name is for GDAL, without which this program was built".to_owned(),
         false => format!("not a {what} format that this build reads; it is without GDAL"),
     };
     without_gdal(Error::unsupported(error)).in_file(names::shown(path))
