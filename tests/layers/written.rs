@@ -5,7 +5,7 @@ use std::process::Command;
 
 use super::{facts, read};
 use breakline::crs::Crs;
-use breakline::data::{ContourLine, Shape};
+use breakline::data::{self, Attributes, ContourLine, Layer, Shape};
 use breakline::io::{contours, layer};
 use serde_json::Value;
 
@@ -282,5 +282,78 @@ fn contours_keep_their_system() {
                 );
             }
         }
+    }
+}
+
+/// More records than are evaluated together: the same are chosen of each format, with their numbers.
+#[test]
+fn a_condition_chooses_the_same_records_of_each_format() {
+    let folder = tempfile::tempdir().unwrap();
+    let count = 3000;
+    let shape = |i: i64| {
+        let x = 500_000.0 + i as f64;
+        Shape::Lines(vec![vec![[x, 0.0, 1.0], [x + 0.5, 1.0, 2.0]]])
+    };
+    let row = |i: i64| {
+        let kind = if i == 2500 { "high" } else { "7" };
+        vec![data::Value::Whole(i), data::Value::Text(kind.to_owned())]
+    };
+    let lines = Layer {
+        shapes: (1..=count).map(shape).collect(),
+        attributes: Some(Attributes {
+            names: vec!["id".to_owned(), "kind".to_owned()],
+            rows: (1..=count).map(row).collect(),
+        }),
+        ..Layer::default()
+    };
+    for name in ["a.shp", "a.gpkg", "a.geojson", "a.fgb"] {
+        let path = folder.path().join(name);
+        layer::write_lines(&path, &lines).unwrap();
+        let read = |text: &str| {
+            let condition = layer::Condition::parse(text).unwrap();
+            let options = layer::Options {
+                columns: &["id"],
+                condition: Some(&condition),
+                ..layer::Options::default()
+            };
+            layer::read_with(&path, &options, &|_| Ok(()))
+        };
+        let whole = layer::read(&path.display().to_string()).unwrap();
+        for text in [
+            "id <= 3 OR id > 2990",
+            "id BETWEEN 1000 AND 2100",
+            "id > 0",
+            "id < 0",
+        ] {
+            let chosen = read(text).unwrap();
+            let ids: Vec<f64> = chosen.columns[0].values.clone();
+            let holds = |&id: &f64| match text {
+                "id <= 3 OR id > 2990" => id <= 3.0 || id > 2990.0,
+                "id BETWEEN 1000 AND 2100" => (1000.0..=2100.0).contains(&id),
+                "id > 0" => true,
+                _ => false,
+            };
+            let mut sorted = ids.clone();
+            sorted.sort_by(f64::total_cmp);
+            let expected: Vec<f64> = (1..=count).map(|id| id as f64).filter(holds).collect();
+            assert_eq!(sorted, expected, "{name} {text}");
+            assert!(chosen.attributes.is_none());
+            for (at, shape) in chosen.shapes.iter().enumerate() {
+                assert_eq!(*shape, whole.shapes[chosen.record(at) - 1], "{name} {text}");
+            }
+            assert_eq!(chosen.shapes.len(), expected.len());
+            let warned = chosen.warnings.iter();
+            let warned = warned.filter(|text| text.plain().contains("none of 3000 records"));
+            assert_eq!(warned.count(), usize::from(expected.is_empty()), "{name}");
+        }
+        let error = read("kind > 5").unwrap_err();
+        let at = error.location().unwrap();
+        assert!(at.starts_with("record "), "{name}: {error}");
+        let record: usize = at["record ".len()..].parse().unwrap();
+        let line = [500_000.0 + 2500.0, 0.0, 1.0];
+        assert!(
+            whole.shapes[record - 1].vertices().any(|&p| p == line),
+            "{name} {at}"
+        );
     }
 }

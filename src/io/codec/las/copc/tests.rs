@@ -5,13 +5,15 @@ use std::collections::{BTreeMap, BTreeSet};
 use testkit::random::Random;
 
 use super::divide::{Cube, Divider, Node, Sizes};
+use super::hierarchy::{Chunk, Hierarchy};
 use super::list::List;
 use super::widen::Widening;
 use crate::data::{Bounds, Lattice, PointBatch};
 use crate::error::Kind;
+use crate::io::bytes::little_endian::{u32_at, u64_at};
 use crate::io::codec::las::Detail;
 use crate::io::codec::las::header::Header;
-use crate::io::codec::las::node::Key;
+use crate::io::codec::las::node::{ENTRY, Key};
 use crate::io::codec::las::record::RecordLayout;
 
 const STRIDE: usize = 16;
@@ -153,6 +155,47 @@ fn the_nodes_do_not_depend_on_where_records_are_held() {
         .unwrap();
     let alone = one.install(|| divided(&all, 8.0, SIZES).unwrap());
     assert!(alone == divided(&all, 8.0, SIZES).unwrap());
+}
+
+#[test]
+fn each_node_is_on_one_page_below_the_first() {
+    let mut random = Random(2);
+    let mut keys = BTreeSet::from([Key::ROOT]);
+    for _ in 0..40 {
+        let mut key = Key::ROOT;
+        for _ in 0..random.index(13) {
+            key = key.below(random.index(8));
+            keys.insert(key);
+        }
+    }
+    let chunk = |(number, &key): (usize, &Key)| Chunk {
+        key,
+        start: 500 + number as u64,
+        bytes: number as u32,
+        points: number as i32 + 1,
+    };
+    let chunks: Vec<Chunk> = keys.iter().enumerate().map(chunk).collect();
+    let start = 10_000;
+    let Hierarchy { pages, first } = Hierarchy::of(&chunks, start);
+    let mut listed = BTreeMap::new();
+    let mut waiting = vec![(Key::ROOT, start, first)];
+    let (mut read, mut count) = (0, 0);
+    while let Some((above, at, bytes)) = waiting.pop() {
+        (read, count) = (read + bytes, count + 1);
+        let page = &pages[(at - start) as usize..][..bytes as usize];
+        for entry in page.chunks_exact(ENTRY) {
+            let key = Key::of(entry).unwrap();
+            assert!(key.is_part_of(above) && key.level <= above.level + 5);
+            let (at, bytes) = (u64_at(entry, 16), u32_at(entry, 24));
+            match u32_at(entry, 28).cast_signed() {
+                -1 => waiting.push((key, at, bytes.into())),
+                points => drop(listed.insert(key, (at, bytes, points))),
+            }
+        }
+    }
+    let expected = chunks.iter().map(|c| (c.key, (c.start, c.bytes, c.points)));
+    assert!(listed == expected.collect());
+    assert!(read == pages.len() as u64 && count > 20, "{count}");
 }
 
 #[test]
