@@ -27,10 +27,14 @@ mod signals {
     use signal_hook::iterator::Signals;
     use signal_hook::low_level::emulate_default_handler;
     use std::sync::Arc;
+    use std::time::{Duration, Instant};
+
+    /// A signal that comes so long after the first one ends the program at once.
+    const IMPATIENT: Duration = Duration::from_secs(1);
 
     /// Handles SIGINT, SIGTERM, SIGQUIT and SIGHUP: removes temporary files, then ends the process
     /// as the signal would have done. A shell sees the status 128 + the signal's number, and a loop
-    /// in a script ends, too.
+    /// in a script ends, too. A second signal, a second later, ends it without waiting.
     pub(super) fn clean_up() {
         // Ignored, so that a file beyond the user's size limit is an error like a full disk.
         let _ = signal_hook::flag::register(SIGXFSZ, Arc::default());
@@ -42,17 +46,29 @@ mod signals {
             return;
         };
         std::thread::spawn(move || {
-            let Some(signal) = signals.forever().next() else {
+            let mut signals = signals.forever();
+            let Some(signal) = signals.next() else {
                 return;
             };
-            let _nothing_appears_now = breakline::io::abandon_outputs();
-            breakline::cli::print_last_words();
-            // The first process of a container is not ended by signals.
-            if std::process::id() != 1 {
-                let _ = emulate_default_handler(signal);
+            let begin = Instant::now();
+            std::thread::spawn(move || {
+                let _nothing_appears_now = breakline::io::abandon_outputs();
+                breakline::cli::print_last_words();
+                end(signal);
+            });
+            // Many files take a while. Shells and parents may send two signals at once.
+            if let Some(signal) = signals.find(|_| begin.elapsed() > IMPATIENT) {
+                end(signal);
             }
-            std::process::exit(128 + signal);
         });
+    }
+
+    fn end(signal: i32) -> ! {
+        // The first process of a container is not ended by signals.
+        if std::process::id() != 1 {
+            let _ = emulate_default_handler(signal);
+        }
+        std::process::exit(128 + signal);
     }
 
     /// Returns true if the parent process had ignored the signal, as `nohup` does; false if the

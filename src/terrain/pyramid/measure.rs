@@ -180,7 +180,15 @@ impl Work<'_> {
                         near = Some(cell);
                         continue;
                     }
-                    Passage::Along(_) | Passage::Vertex(_) => continue,
+                    // The tile bends here, and has a vertex already.
+                    Passage::Vertex(vertex) => {
+                        let bend = *self.triangulation.point(vertex);
+                        if let Some(line) = height_on(ends, bend) {
+                            self.add(&mut found, (line - bend[2]).abs());
+                        }
+                        continue;
+                    }
+                    Passage::Along(_) => continue,
                 };
                 let corners = tds.corners(cell);
                 let across =
@@ -222,6 +230,15 @@ impl Work<'_> {
         }
         Ok(found)
     }
+}
+
+/// Returns the height of a segment where it passes through a position; `None` if its ends are at one
+/// position.
+fn height_on([p, q]: [[f64; 3]; 2], [u, v, _]: [f64; 3]) -> Option<f64> {
+    let [x, y, z] = [0, 1, 2].map(|k| q[k] - p[k]);
+    let share = ((u - p[0]) * x + (v - p[1]) * y) / (x * x + y * y);
+    let height = p[2] + share.clamp(0.0, 1.0) * z;
+    height.is_finite().then_some(height)
 }
 
 /// Returns where two segments cross, and the height of each there.

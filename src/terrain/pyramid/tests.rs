@@ -547,3 +547,38 @@ fn the_bound_holds_along_lines() {
         assert!(judged > 500, "{judged}");
     }
 }
+
+/// The tile bends in a vertex that lies exactly under the line.
+#[test]
+fn a_line_through_vertices_of_a_tile_is_measured_there() {
+    let rule = PyramidRule {
+        max_error: Some(20.0),
+        finest: Some(6),
+        ..PyramidRule::default()
+    };
+    // The diagonal of a tile at each level; beside it, spikes that are rounded to it.
+    let step = 180.0 / 64.0 / f64::from(TerrainTile::STEPS);
+    let [begin, end] = [0.25, 0.6875];
+    let mut builder = TinBuilder::default();
+    for [x, y] in [[0.2, 0.2], [0.75, 0.2], [0.2, 0.75], [0.75, 0.75]] {
+        builder.add_points(&[x], &[y], &[100.0]);
+    }
+    for k in [4000.0, 5111.0, 6500.0] {
+        builder.add_points(&[(k + 0.4) * step], &[k * step], &[1100.0]);
+    }
+    builder.add_breakline(&[[begin, begin, 100.0], [end, end, 100.0]]);
+    let surface = builder.build().unwrap();
+    let mut largest = 0.0_f64;
+    for (tile, report) in collect(&mut pyramid(&surface, &rule)).iter().flatten() {
+        let [[west, south], _] = rule.tiling.bounds(tile.at);
+        for &[u, v, z] in &tile.vertices {
+            let [x, y, z] = tile.position(rule.tiling, [u, v, z]);
+            if west == south && u == v && (begin..end).contains(&x) && x == y {
+                let off = (z - 100.0).abs();
+                largest = largest.max(off);
+                assert!(report.largest >= off * (1.0 - 1e-9), "{:?} {off}", tile.at);
+            }
+        }
+    }
+    assert!(largest > 500.0, "{largest}");
+}

@@ -92,8 +92,9 @@ impl OutputFolder {
     /// Writes a file, given its path in the folder; folders around it are created.
     ///
     /// # Errors
-    /// If it cannot be written; the error names it as it would appear.
+    /// If it cannot be written; the error names it as it would appear. If outputs are abandoned.
     pub(crate) fn write(&self, name: &Path, bytes: &[u8]) -> Result<()> {
+        temporary::refuse_abandoned()?;
         let path = self.path().join(name);
         let write = || {
             if let Some(folder) = path.parent() {

@@ -4,9 +4,12 @@
 use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 use super::target::folder_of;
+use crate::error::{Error, Result};
 
 /// How the names of all temporary files begin.
 const PREFIX: &str = ".breakline-";
@@ -19,6 +22,12 @@ const ATTEMPTS: usize = 1000;
 
 /// All temporary files of the process. Locked while one is created and while a set is renamed.
 static ALL: Mutex<Vec<Listed>> = Mutex::new(Vec::new());
+
+/// True while a guard says that no output appears anymore.
+static ABANDONED: AtomicBool = AtomicBool::new(false);
+
+/// How long a thread may take for the file that it is just writing.
+const LAST_FILE: Duration = Duration::from_millis(20);
 
 /// A temporary file or folder of the process.
 #[derive(Debug)]
@@ -60,6 +69,17 @@ impl Listed {
                 }
             }
         }
+    }
+}
+
+/// Returns an error if all outputs are abandoned; a program that ends early has ended before that.
+pub(super) fn refuse_abandoned() -> Result<()> {
+    match ABANDONED.load(Ordering::Relaxed) {
+        true => {
+            drop(all());
+            Err(Error::canceled())
+        }
+        false => Ok(()),
     }
 }
 
@@ -222,6 +242,12 @@ pub struct Abandoned {
     _all: MutexGuard<'static, Vec<Listed>>,
 }
 
+impl Drop for Abandoned {
+    fn drop(&mut self) {
+        ABANDONED.store(false, Ordering::Relaxed);
+    }
+}
+
 /// Removes the temporary files of all outputs, for a program that is about to end early; those
 /// that other processes have put in their places stay.
 ///
@@ -229,7 +255,13 @@ pub struct Abandoned {
 /// first.
 pub fn abandon_outputs() -> Abandoned {
     let mut all = all();
-    all.drain(..).for_each(|listed| listed.remove());
+    ABANDONED.store(true, Ordering::Relaxed);
+    all.iter().for_each(Listed::remove);
+    if all.iter().any(|listed| matches!(listed.what, What::Folder)) {
+        std::thread::sleep(LAST_FILE);
+        all.iter().for_each(Listed::remove);
+    }
+    all.clear();
     Abandoned { _all: all }
 }
 
