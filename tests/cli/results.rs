@@ -746,7 +746,8 @@ fn points_are_selected_clipped_and_merged() {
     assert!(!folder.path().join("e.las").exists());
     let run = run_in(&folder, &["points", "a.las", "-o", "a.tif"]);
     assert!(
-        run.stderr.contains(".las, .laz, .xyz, .txt, .csv"),
+        run.stderr
+            .contains(".las, .copc.laz, .laz, .xyz, .txt, .csv"),
         "{}",
         run.stderr
     );

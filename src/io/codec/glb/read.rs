@@ -52,7 +52,9 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], &[u8])> {
         Some(VERSION) => (),
         Some(version) => {
             return Err(
-                Error::unsupported(format!("version {version} of glTF, expected 2")).at("byte 4"),
+                Error::unsupported(format!("version {version} of glTF, expected 2"))
+                    .at("byte 4")
+                    .cure("export it as glTF 2.0"),
             );
         }
         None => return Err(Error::format("the file ends within its header").at("byte 4")),
