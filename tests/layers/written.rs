@@ -285,8 +285,7 @@ fn contours_keep_their_system() {
     }
 }
 
-/// More records than are evaluated together: the same are chosen of each format, with their
-/// numbers.
+/// More records than are evaluated together: the same are chosen of each format.
 #[test]
 fn a_condition_chooses_the_same_records_of_each_format() {
     let folder = tempfile::tempdir().unwrap();
