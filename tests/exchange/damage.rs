@@ -1,14 +1,12 @@
 //! Damaged files of each format that is read: an error names the file and a place in it.
 
 use std::path::Path;
-use std::process::Command;
 
 use breakline::crs::Crs;
 use breakline::data::{Attributes, Layer, Shape, Value};
 use breakline::io::{ascii_grid, layer, mesh};
 use testkit::random::Random;
 
-use crate::program::files_of;
 use crate::sample::field;
 
 type Read = fn(&Path) -> breakline::Result<()>;
@@ -135,54 +133,4 @@ fn a_damaged_file_is_an_error_that_names_file_and_place() {
         }
         assert!(errors * 3 > cases, "{extension}: {errors} of {cases}");
     }
-}
-
-/// Through the program, with an address space of 1 GB.
-#[test]
-fn a_damaged_file_takes_little_memory_and_leaves_nothing() {
-    const MEMORY: &str = "1000000";
-    let cases = cases(500) / 40;
-    let mut random = Random(103);
-    let mut failed = 0;
-    let extensions = ["xml", "glb", "nc", "2dm", "fgb", "gpkg", "geojson"];
-    for extension in extensions {
-        let folder = tempfile::tempdir().unwrap();
-        let name = format!("a.{extension}");
-        let path = folder.path().join(&name);
-        let verb = match extension {
-            "fgb" | "gpkg" | "geojson" => {
-                layer::write_lines(&path, &lines()).unwrap();
-                vec!["tin", &name, "-o", "out.ply"]
-            }
-            _ => {
-                mesh::write(&path, &field(Some("EPSG:25832"))).unwrap();
-                vec!["contour", &name, "--interval=1", "-o", "out.geojson"]
-            }
-        };
-        let bytes = std::fs::read(&path).unwrap();
-        for case in 0..cases {
-            std::fs::write(&path, mutated(&bytes, &mut random)).unwrap();
-            let output = Command::new("sh")
-                .current_dir(folder.path())
-                .args(["-c", "ulimit -v \"$0\" && exec \"$@\"", MEMORY])
-                .arg(assert_cmd::cargo::cargo_bin!("breakline"))
-                .args(&verb)
-                .arg("--threads=1")
-                .output()
-                .unwrap();
-            let said = String::from_utf8_lossy(&output.stderr);
-            let code = output.status.code();
-            assert!(code.is_some_and(|code| code < 3), "{name} {case}: {said}");
-            assert!(!said.contains("panicked"), "{name} {case}: {said}");
-            let written = verb.last().map(|name| folder.path().join(name)).unwrap();
-            if code == Some(0) {
-                std::fs::remove_file(written).unwrap();
-                continue;
-            }
-            failed += 1;
-            assert!(said.contains("\nhint: "), "{name} {case}: {said}");
-            assert_eq!(files_of(folder.path()), [name.as_str()], "{case}: {said}");
-        }
-    }
-    assert!(failed > cases, "{failed} of {cases} in each format");
 }
