@@ -232,8 +232,8 @@ impl Work<'_> {
     }
 }
 
-/// Returns the height of a segment where it passes through a position; `None` if its ends are at one
-/// position.
+/// Returns the height of a segment where it passes through a position; `None` if its ends are at
+/// one position.
 fn height_on([p, q]: [[f64; 3]; 2], [u, v, _]: [f64; 3]) -> Option<f64> {
     let [x, y, z] = [0, 1, 2].map(|k| q[k] - p[k]);
     let share = ((u - p[0]) * x + (v - p[1]) * y) / (x * x + y * y);
