@@ -785,6 +785,39 @@ fn a_written_file_that_is_damaged_is_refused_or_read() {
     );
 }
 
+/// Keys may say nothing of heights but their unit; an octree has WKT, which says it, too.
+#[test]
+fn the_unit_of_heights_is_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    let [old, new] = ["a.las", "a.copc.laz"].map(|name| folder.path().join(name));
+    let points = [[0.0, 0.0, 5.0], [9.0, 0.0, 6.0], [0.0, 9.0, 7.0]].map(|p| (p, 2));
+    std::fs::write(
+        &old,
+        testkit::lidar::las_with_heights_in_feet(&points, 26917),
+    )
+    .unwrap();
+    let request = PointsRequest {
+        files: vec![old.clone()],
+        ..PointsRequest::default()
+    };
+    copy(&request, &new).unwrap();
+    let unit = |path: &Path| {
+        let bytes = std::fs::read(path).unwrap();
+        let crs = open(&bytes, Detail::Columns)
+            .unwrap()
+            .info()
+            .crs
+            .clone()
+            .unwrap();
+        (crs.epsg, crs.vertical_unit.unwrap().factor)
+    };
+    for (code, factor) in [unit(&old), unit(&new)] {
+        // Text has 17 digits.
+        assert_eq!(code, Some(26917));
+        assert!((factor / (1200.0 / 3937.0) - 1.0).abs() < 1e-15, "{factor}");
+    }
+}
+
 #[test]
 fn what_has_no_room_in_an_octree_is_refused() {
     let folder = tempfile::tempdir().unwrap();

@@ -135,6 +135,18 @@ impl Crs {
         }
     }
 
+    /// Like [`to_wkt`](Self::to_wkt), but always with the unit of heights: if nothing else is known of
+    /// them, as a vertical system of unknown datum.
+    pub(crate) fn to_wkt_with_unit_of_heights(&self) -> String {
+        let wkt = self.to_wkt();
+        match &self.vertical_unit {
+            Some(unit) if Crs::from_wkt(&wkt).is_ok_and(|read| read.vertical_unit.is_none()) => {
+                wkt_write::write_compound(&self.name, &wkt, (None, unit))
+            }
+            _ => wkt,
+        }
+    }
+
     fn write(&self, dialect: Dialect) -> String {
         let found = self.epsg.and_then(registry::find);
         // The name of the horizontal part, if the registry has it.

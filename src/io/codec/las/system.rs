@@ -13,6 +13,12 @@ const RECORDS: [u16; 5] = [2111, 2112, 34735, 34736, 34737];
 /// The bit of the global encoding that says that the system is in WKT.
 pub(super) const WKT_BIT: u8 = 1 << 4;
 
+/// Returns true if a record states a coordinate system, or a part of one.
+pub(super) fn is_of_system(record: &Vec<u8>) -> bool {
+    record.get(2..18).map(until_zero).as_deref() == Some(USER)
+        && RECORDS.contains(&u16_at(record, 18))
+}
+
 /// States a coordinate system in the head of a file, instead of what it states.
 ///
 /// It is stated by GeoTIFF keys, which most programs read, in files of point formats 0 to 5; by WKT
@@ -21,12 +27,8 @@ pub(super) const WKT_BIT: u8 = 1 << 4;
 /// # Errors
 /// If the system needs WKT, and the version of LAS is below 1.4.
 pub fn state_system(head: &mut LasHead, crs: &Crs) -> Result<()> {
-    let is_system = |record: &Vec<u8>| {
-        record.get(2..18).map(until_zero).as_deref() == Some(USER)
-            && RECORDS.contains(&u16_at(record, 18))
-    };
-    head.records.retain(|record| !is_system(record));
-    head.late_records.retain(|record| !is_system(record));
+    head.records.retain(|record| !is_of_system(record));
+    head.late_records.retain(|record| !is_of_system(record));
     let keys = (head.point_format < 6)
         .then(|| GeoKeys::from_crs(crs))
         .filter(|keys| states(keys, crs));
@@ -36,7 +38,7 @@ pub fn state_system(head: &mut LasHead, crs: &Crs) -> Result<()> {
         None if version >= 4 => vec![(
             2112,
             "OGC coordinate system WKT",
-            [crs.to_wkt().as_bytes(), &[0]].concat(),
+            [crs.to_wkt_with_unit_of_heights().as_bytes(), &[0]].concat(),
         )],
         None => {
             return Err(Error::unsupported(format!(

@@ -2,7 +2,8 @@
 //!
 //! A node with few points has all of them. Any other one has an even sample: of each cell of a grid
 //! of 128 cells along each axis the point nearest to its center. The nodes below it divide the
-//! rest. Those that would have very few points have none: the node above has them, too.
+//! rest. Where very few are left for a node and all below it, the node above has them, too, after
+//! its sample.
 //!
 //! What a node has depends on its points and their order alone, not on threads or on where they
 //! are held.
@@ -38,7 +39,7 @@ const FINE: u32 = 11;
 pub(super) struct Sizes {
     /// A node with at most so many points has none below it.
     pub(super) leaf: u64,
-    /// A node that is not the root has at least so many points.
+    /// A node that is not the root has at least so many points, with those of the nodes below it.
     pub(super) least: u64,
     /// The most points of a node.
     pub(super) most: u64,
@@ -57,14 +58,31 @@ pub(super) struct Cube {
 impl Cube {
     /// Returns a cube around all points that is a step larger. Its lowest corner is that of the
     /// bounds, where some programs expect it.
-    pub(super) fn around(bounds: &Bounds, lattice: Lattice) -> Self {
+    ///
+    /// # Errors
+    /// If it is larger than numbers are.
+    pub(super) fn around(bounds: &Bounds, lattice: Lattice) -> Result<Self> {
         let largest = |of: [f64; 3]| of.into_iter().fold(0.0, f64::max);
         let sides = [0, 1, 2].map(|k| bounds.max[k] - bounds.min[k]);
         let half = (largest(sides) + largest(lattice.scale.map(f64::abs))) / 2.0;
-        Cube {
-            center: bounds.min.map(|low| low + half),
-            half,
-            lattice,
+        let low = match bounds.is_empty() {
+            true => [0.0; 3],
+            false => bounds.min,
+        };
+        let center = low.map(|low| low + half);
+        // Also the side, and what is beyond the cube by as much.
+        match center
+            .map(|c| c.abs() + 4.0 * half)
+            .iter()
+            .all(|c| c.is_finite())
+        {
+            true => Ok(Cube {
+                center,
+                half,
+                lattice,
+            }),
+            false => Err(Error::limit("the coordinates are too large for an octree")
+                .cure("write them as .laz")),
         }
     }
 
@@ -117,6 +135,7 @@ impl Divider {
         write: &mut dyn FnMut(Vec<Node>) -> Result<()>,
     ) -> Result<()> {
         if list.bytes() <= self.sizes.held || self.is_leaf(key, &list) {
+            self.require_few(key, &list)?;
             let held = List::held(self.stride, list.into_bytes()?);
             return write(self.divide_held(key, held)?);
         }
@@ -135,17 +154,23 @@ impl Divider {
         list.count() <= self.sizes.leaf || key.level == DEEPEST
     }
 
+    /// Returns an error if a node that is not divided has too many points.
+    fn require_few(&self, key: Key, list: &List) -> Result<()> {
+        if list.count() <= self.sizes.most || !self.is_leaf(key, list) {
+            return Ok(());
+        }
+        Err(Error::limit(format!(
+            "{} points are nearly at one position; at most {} can be in a node of COPC",
+            list.count(),
+            self.sizes.most
+        ))
+        .cure("write them as .laz"))
+    }
+
     /// Returns the nodes of records in memory.
     fn divide_held(&self, key: Key, list: List) -> Result<Vec<Node>> {
         if self.is_leaf(key, &list) {
-            if list.count() > self.sizes.most {
-                return Err(Error::limit(format!(
-                    "{} points are at one position; at most {} can be in a node of COPC",
-                    list.count(),
-                    self.sizes.most
-                ))
-                .cure("write them as .laz"));
-            }
+            self.require_few(key, &list)?;
             let records = list.into_bytes()?;
             return Ok(vec![Node { key, records }]);
         }

@@ -24,7 +24,7 @@ use super::merge::record_header;
 use super::node::{INFO, Key};
 use super::packed::failed;
 use super::raw::{EVLR_HEADER, MAX_HEADER, VLR_HEADER};
-use super::system::{WKT_BIT, state_system};
+use super::system::{WKT_BIT, is_of_system, state_system};
 use crate::data::{Bounds, LasHead, Lattice, PointInfo};
 use crate::error::{Error, Result};
 use crate::io::bytes::contain::contain;
@@ -84,14 +84,15 @@ pub(super) fn prepare(head: &mut LasHead, sources: &[&PointInfo]) -> Result<Opti
         head.record_length = widening.length()?;
         head.header[105..107].copy_from_slice(&head.record_length.to_le_bytes());
     }
-    let says_wkt = head.header[ENCODING] & WKT_BIT != 0;
+    // Before LAS 1.4, the bit means nothing.
+    let says_wkt = version >= 4 && head.header[ENCODING] & WKT_BIT != 0;
     if let Some(crs) = sources.iter().find_map(|info| info.crs.as_ref())
         && !says_wkt
     {
         state_system(head, crs)?;
     }
     // Without a system, too, unless it is in keys that are not understood.
-    let is_key = |record: &Vec<u8>| u16_at(record, 18) == KEYS;
+    let is_key = |record: &Vec<u8>| is_of_system(record) && u16_at(record, 18) == KEYS;
     if !head.records.iter().any(is_key) {
         head.header[ENCODING] |= WKT_BIT;
     }
@@ -150,7 +151,7 @@ impl<'a> Gathered<'a> {
         lattice: Lattice,
     ) -> Result<Vec<u8>> {
         let list = self.list.take().ok_or_else(written)?;
-        let cube = Cube::around(bounds, lattice);
+        let cube = Cube::around(bounds, lattice)?;
         let divider = Divider {
             cube,
             sizes: SIZES,

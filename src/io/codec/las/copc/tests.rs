@@ -47,7 +47,7 @@ fn cube(side: f64) -> Cube {
         min: LATTICE.point([-7; 3]),
         max: LATTICE.point([side as i32 - 8, side as i32 - 8, -4]),
     };
-    Cube::around(&bounds, LATTICE)
+    Cube::around(&bounds, LATTICE).unwrap()
 }
 
 fn divided(records: &[u8], side: f64, sizes: Sizes) -> crate::error::Result<Vec<Node>> {
