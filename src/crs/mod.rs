@@ -135,8 +135,8 @@ impl Crs {
         }
     }
 
-    /// Like [`to_wkt`](Self::to_wkt), but always with the unit of heights: if nothing else is known of
-    /// them, as a vertical system of unknown datum.
+    /// Like [`to_wkt`](Self::to_wkt), but always with the unit of heights: if nothing else is known
+    /// of them, as a vertical system of unknown datum.
     pub(crate) fn to_wkt_with_unit_of_heights(&self) -> String {
         let wkt = self.to_wkt();
         match &self.vertical_unit {
