@@ -14,7 +14,7 @@ const RECORDS: [u16; 5] = [2111, 2112, 34735, 34736, 34737];
 pub(super) const WKT_BIT: u8 = 1 << 4;
 
 /// Returns true if a record states a coordinate system, or a part of one.
-pub(super) fn is_of_system(record: &Vec<u8>) -> bool {
+pub(super) fn is_of_system(record: &[u8]) -> bool {
     record.get(2..18).map(until_zero).as_deref() == Some(USER)
         && RECORDS.contains(&u16_at(record, 18))
 }
