@@ -180,7 +180,7 @@ fn what_is_no_ramp_is_refused_and_nothing_is_written() {
         ),
         (1, "--ramp bad.txt -o c.tif", "`50% red`"),
         (2, "--match best -o c.tif", "linear, nearest, exact"),
-        (2, "-o c.jpg", ".tif, .tiff, .png"),
+        (2, "-o c.doc", ".tif, .tiff, .png"),
         (2, "--ramp r.png -o r.png --overwrite", "one of the inputs"),
     ] {
         let words = format!("color-relief a.xyz {words}");

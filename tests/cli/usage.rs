@@ -110,7 +110,7 @@ fn wrong_usage_ends_with_2_and_leaves_nothing() {
         (&["tin", "a.xyz", "-o", "t"], ".ply, .obj, .off, .xml"),
         (&["dem", "a.xyz", "-o", "t.png"], ".tif"),
         (&["contour", "a.xyz", "-o", "t.dwg"], ".shp, .geojson"),
-        (&["hillshade", "a.xyz", "-o", "t.jpg"], ".tif, .tiff, .png"),
+        (&["hillshade", "a.xyz", "-o", "t.doc"], ".tif, .tiff, .png"),
         (
             &["dem", "a.xyz", "-o", "t.tif", "--resolution", "0"],
             "above zero",
