@@ -291,7 +291,8 @@ impl Reading<'_> {
             .list(schema::feature::COLUMNS, 4)?
             .is_some_and(|own| !own.is_empty())
         {
-            return Err(Error::unsupported("a record with attributes of its own"));
+            return Err(Error::unsupported("a record with attributes of its own")
+                .cure("save the layer again, with the same attributes for all records"));
         }
         let properties = feature.list(schema::feature::PROPERTIES, 1)?;
         let row = row(properties.unwrap_or_default(), &self.head.columns)?;

@@ -9,6 +9,9 @@ use crate::error::{Error, Result};
 use crate::io::Watch;
 use crate::io::bytes::little_endian::{array_at, f32_at, u8_at, u16_at, u32_at};
 
+/// What is read whatever wrote it.
+const PLAIN: &str = "export plain triangles as one GLB file";
+
 /// Reads all triangles of the nodes with meshes, which may be translated. Coordinates are the sums
 /// of the local origin and the 32-bit floats.
 ///
@@ -193,7 +196,8 @@ impl<'a> File<'a> {
         if mode != 4 {
             return Err(Error::unsupported(format!(
                 "a primitive of mode {mode}, expected triangles (4)"
-            )));
+            ))
+            .cure(PLAIN));
         }
         let positions = self.array(&primitive["attributes"]["POSITION"], "VEC3", &[FLOAT])?;
         let first = triangles.vertices.len();
@@ -247,16 +251,17 @@ impl<'a> File<'a> {
             return Err(at(Error::unsupported(format!(
                 "numbers of type {kind} {}, expected {shape}",
                 accessor["type"]
-            ))));
+            ))
+            .cure(PLAIN)));
         }
         if accessor.get("sparse").is_some() {
-            return Err(at(Error::unsupported("a sparse array")));
+            return Err(at(Error::unsupported("a sparse array").cure(PLAIN)));
         }
         let view = self
             .item("bufferViews", &accessor["bufferView"])
             .map_err(at)?;
         if view["buffer"].as_u64().unwrap_or(0) != 0 {
-            return Err(at(Error::unsupported("numbers in another file")));
+            return Err(at(Error::unsupported("numbers in another file").cure(PLAIN)));
         }
         let size = match kind {
             BYTE => 1,

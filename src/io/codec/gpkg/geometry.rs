@@ -30,9 +30,10 @@ pub(super) fn read(blob: &[u8], into: &mut Vec<Shape>) -> Result<()> {
         return Err(Error::format("a geometry that is not of GeoPackage"));
     }
     if flags & 0b10_0000 != 0 {
-        return Err(Error::unsupported(
-            "a geometry of an extension of GeoPackage",
-        ));
+        return Err(
+            Error::unsupported("a geometry of an extension of GeoPackage")
+                .cure("save it as points, lines or polygons"),
+        );
     }
     let envelope = match (flags >> 1) & 0b111 {
         0 => 0,

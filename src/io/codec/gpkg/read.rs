@@ -208,7 +208,8 @@ impl Source {
         if is_package.is_none() {
             return Err(Error::unsupported(
                 "an SQLite database that is not a GeoPackage, or one without layers of geometries",
-            ));
+            )
+            .cure("save its layers as GeoPackage"));
         }
         let layers = "SELECT table_name, column_name, geometry_type_name, srs_id \
                       FROM gpkg_geometry_columns ORDER BY rowid";
