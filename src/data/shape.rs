@@ -172,9 +172,8 @@ impl Layer {
         chosen.copied().unwrap_or(at + 1)
     }
 
-    /// Of the shapes behind those that are chosen already, keeps those that are marked true in
-    /// `held`, with their values; removes the others. The first of them has this many before it in
-    /// the file.
+    /// Removes the shapes that are marked false in `held`, with their values. `held` begins at the
+    /// first shape that no earlier call has chosen; in the file, `before` shapes precede that one.
     pub(crate) fn keep(&mut self, before: usize, held: &[bool]) {
         let chosen = self.chosen.get_or_insert_default();
         let first = chosen.len();
@@ -200,7 +199,7 @@ impl Layer {
     }
 }
 
-/// Of the values from the first one on, keeps those that are marked true in `held`.
+/// Removes the values that are marked false in `held`, which begins at the value `first`.
 fn retain<T>(values: &mut Vec<T>, first: usize, held: &[bool]) {
     let last = values.split_off(first.min(values.len()));
     let kept = last.into_iter().zip(held).filter(|(_, held)| **held);

@@ -95,7 +95,7 @@ fn larger_points_are_asked_in_one_command() {
     assert_left_nothing(&folder);
 }
 
-/// Of points in degrees, with a line across the parts.
+/// The points are in degrees, and a breakline crosses the parts of the surface.
 #[test]
 fn terrain_tiles_of_larger_points_are_the_same_files() {
     let zeros = "0".repeat(80);

@@ -63,7 +63,7 @@ impl Staged {
     }
 }
 
-/// An output that is no file, such as a table: it appears by a call, or not at all if it is
+/// An output that is not a file, such as a table: it appears by a call, or not at all if it is
 /// dropped.
 pub(crate) trait Deferred: std::fmt::Debug {
     /// Returns its name.
@@ -453,7 +453,7 @@ impl Destination<'_> {
         }
     }
 
-    /// Takes an output that is no file.
+    /// Takes an output that is not a file.
     ///
     /// # Errors
     /// As [`OutputSet::commit`].
