@@ -72,8 +72,8 @@ impl Listed {
     }
 }
 
-/// Returns an error if all outputs are abandoned, but only after the guard is dropped: a program that
-/// ends early never sees it.
+/// Returns an error if all outputs are abandoned, but only after the guard is dropped: a program
+/// that ends early never sees it.
 pub(super) fn refuse_abandoned() -> Result<()> {
     match ABANDONED.load(Ordering::Relaxed) {
         true => {
