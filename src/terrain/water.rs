@@ -1,10 +1,13 @@
 //! Water on a surface: which faces are water, and which cells of a square.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
+
+use rustc_hash::FxHashMap;
 
 use super::boxes::{Boxed, Boxes, Extent};
 use crate::data::{AT_ONCE, EdgeKind, Surface, WaterMask};
 use crate::error::Result;
+use crate::triangulation::num::unsigned_zero;
 
 /// Returns the triangles of a surface that are water. Triangles that are connected without a shore
 /// or a bank between them are water if all of them are at one height, or if they reach a bank, have
@@ -45,7 +48,7 @@ pub fn water_triangles(
         }
         from = to;
     }
-    let mut known = HashMap::new();
+    let mut known = FxHashMap::default();
     let mut water = Vec::new();
     for (number, &face) in shores.faces.iter().enumerate() {
         if number.is_multiple_of(AT_ONCE) {
@@ -84,7 +87,7 @@ impl Shores {
         &self,
         surface: &dyn Surface,
         face: u32,
-        known: &mut HashMap<u32, bool>,
+        known: &mut FxHashMap<u32, bool>,
         water: &mut Vec<[[f64; 3]; 3]>,
     ) {
         let Some([[_, _, level], ..]) = surface.triangle(face) else {
@@ -127,7 +130,7 @@ impl Shores {
                     Some(false) => [is_level, is_of_shores] = [false; 2],
                 }
             }
-            // Land may be large: there is no need to know all of it.
+            // It is land, which may be large: the rest of it need not be visited.
             if !is_level && !is_of_shores {
                 break;
             }
@@ -140,10 +143,9 @@ impl Shores {
     }
 }
 
-/// The bits of a position.
+/// The bits of a position; those of -0.0 are those of 0.
 fn key(position: [f64; 3]) -> [u64; 3] {
-    // Both zeros are one.
-    position.map(|c| (c + 0.0).to_bits())
+    position.map(|c| unsigned_zero(c).to_bits())
 }
 
 /// A triangle of water in plan.
