@@ -139,9 +139,8 @@ impl Blocks {
             self.open
                 .partition_point(|(key, _)| key >> shift == first >> shift)
         };
-        let sizes = (0..=self.within / 2).rev().map(|half| in_square(2 * half));
-        let size = sizes.into_iter().find(|&size| size <= BLOCK);
-        let size = size.unwrap_or(BLOCK);
+        let mut sizes = (0..=self.within / 2).rev().map(|half| in_square(2 * half));
+        let size = sizes.find(|&size| size <= BLOCK).unwrap_or(BLOCK);
         let block = Block::of(self.start, &self.open[..size]);
         self.open.drain(..size);
         self.start += size as u64;

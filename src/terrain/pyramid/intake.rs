@@ -166,15 +166,8 @@ impl Intake<'_> {
             sorter.extend(vertices)
         })?;
         let mut file = RecordFile::create(self.folder)?;
-        let mut before = None;
-        sorter.finish(&mut |record| {
-            // Batches and parts share vertices.
-            if before == Some(record) {
-                return Ok(());
-            }
-            before = Some(record);
-            file.add(&record)
-        })?;
+        // Batches and parts share vertices.
+        sorter.finish_once(&mut |record| file.add(&record))?;
         if file.count() == 0 || area == 0 {
             return Err(Error::format("the surface has no triangles"));
         }

@@ -66,10 +66,8 @@ impl<const N: usize> RecordFile<N> {
         let file = self.file.get_mut().unwrap_or_else(PoisonError::into_inner);
         let mut write = || {
             file.write_all(&key.to_le_bytes())?;
-            let bytes = numbers.iter().map(|number| number.to_le_bytes());
-            bytes
-                .into_iter()
-                .try_for_each(|bytes| file.write_all(&bytes))
+            let mut bytes = numbers.iter().map(|number| number.to_le_bytes());
+            bytes.try_for_each(|bytes| file.write_all(&bytes))
         };
         write().map_err(|e| in_folder(e, &self.folder))?;
         self.count += 1;
@@ -92,13 +90,9 @@ impl<const N: usize> RecordFile<N> {
         };
         read().map_err(|e| in_folder(e, &self.folder))?;
         records.extend(bytes.chunks_exact(Self::BYTES).map(|bytes| {
-            let word = |k: usize| {
-                let mut word = [0; 8];
-                word.copy_from_slice(&bytes[8 * k..8 * k + 8]);
-                word
-            };
-            let numbers = std::array::from_fn(|k| f64::from_le_bytes(word(k + 1)));
-            (u64::from_le_bytes(word(0)), numbers)
+            let (words, _) = bytes.as_chunks();
+            let numbers = std::array::from_fn(|k| f64::from_le_bytes(words[k + 1]));
+            (u64::from_le_bytes(words[0]), numbers)
         }));
         Ok(())
     }
@@ -168,6 +162,18 @@ impl<const N: usize> Sorter<N> {
         Ok(())
     }
 
+    /// Like [`finish`](Self::finish), but equal records are passed on once.
+    ///
+    /// # Errors
+    /// Those of [`finish`](Self::finish).
+    pub(super) fn finish_once(self, take: &mut dyn FnMut(Record<N>) -> Result<()>) -> Result<()> {
+        let mut before = None;
+        self.finish(&mut |record| match before.replace(record) == Some(record) {
+            true => Ok(()),
+            false => take(record),
+        })
+    }
+
     /// Passes on all records in their order.
     ///
     /// # Errors
@@ -198,11 +204,8 @@ impl<const N: usize> Sorter<N> {
         }
         while let Some(Head { record, from }) = heads.pop() {
             take(record)?;
-            heads.extend(
-                runs[from]
-                    .take(written)?
-                    .map(|record| Head { record, from }),
-            );
+            let next = runs[from].take(written)?;
+            heads.extend(next.map(|record| Head { record, from }));
         }
         Ok(())
     }
@@ -271,12 +274,7 @@ impl<const N: usize> SortedRecords<N> {
     pub(super) fn of(sorter: Sorter<N>) -> Result<Self> {
         let mut file = RecordFile::create(&sorter.folder)?;
         let mut index = Vec::new();
-        let mut before = None;
-        sorter.finish(&mut |record| {
-            if before == Some(record) {
-                return Ok(());
-            }
-            before = Some(record);
+        sorter.finish_once(&mut |record| {
             if file.count().is_multiple_of(STRIDE) {
                 index.push((record.0, record.1[0]));
             }
