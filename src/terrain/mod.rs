@@ -52,6 +52,7 @@ mod admitted;
 mod arranged;
 mod boxes;
 mod builder;
+mod cancel;
 mod caps;
 mod changes;
 mod clip;

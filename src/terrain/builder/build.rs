@@ -1,6 +1,6 @@
 //! From points and lines to the finished surface.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use rayon::prelude::*;
 
@@ -9,6 +9,7 @@ use super::{Overlaps, TinBuilder};
 use crate::data::{AT_ONCE, Bounds, EdgeKind};
 use crate::error::{Error, Result, Setting, wording};
 use crate::terrain::admitted::refused;
+use crate::terrain::cancel::go_on;
 use crate::terrain::crossings::{Pass, choose_heights, refuse};
 use crate::terrain::lines::areas::{self, Leveled};
 use crate::terrain::lines::kinds::LineKinds;
@@ -133,15 +134,6 @@ struct Build<'a> {
     /// What errors call a line that was added.
     name: &'a dyn Fn(usize) -> String,
     cancel: &'a AtomicBool,
-}
-
-/// Returns an error if the work was canceled.
-fn go_on(cancel: &AtomicBool) -> Result<()> {
-    if cancel.load(Ordering::Relaxed) {
-        Err(Error::canceled())
-    } else {
-        Ok(())
-    }
 }
 
 impl Build<'_> {

@@ -2,7 +2,7 @@
 //! surface need not be in memory.
 
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use rustc_hash::FxHashMap;
 
@@ -12,6 +12,7 @@ use super::plan::{FinestTiles, to_earth};
 use super::records::{Record, RecordFile, SortedRecords, Sorter};
 use crate::data::{EdgeKind, Surface, Tiling, area_of, map_batches};
 use crate::error::{Error, Result};
+use crate::terrain::cancel::go_on;
 use crate::terrain::in_order::by_coordinates;
 
 /// Calls a function with each part of a surface, one after the other. A surface in one piece is its
@@ -131,9 +132,7 @@ impl Intake<'_> {
             let make =
                 |faces: &[(u32, [u32; 3])]| make(&Batch::of(surface, faces, tiling, convert)?);
             map_batches(surface.face_count(), ask, make, |result| {
-                if cancel.load(Ordering::Relaxed) {
-                    return Err(Error::canceled());
-                }
+                go_on(cancel)?;
                 take(result?)
             })?;
             surface.ensure_intact()

@@ -1,6 +1,6 @@
 //! How far the heights of a surface and its lines are from the triangles of a tile.
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use rayon::prelude::*;
 use rustc_hash::FxHashMap;
@@ -9,6 +9,7 @@ use super::blocks::Block;
 use super::records::Record;
 use super::tile::{Work, in_tile, inner, rounded};
 use crate::error::{Error, Result};
+use crate::terrain::cancel::go_on;
 use crate::triangulation::tds::{CellId, ccw, cw};
 use crate::triangulation::{Location, Passage};
 
@@ -79,19 +80,15 @@ impl Work<'_> {
     /// Measures all heights of the tile, and its lines; crossings of these are candidates only if
     /// `at_lines`.
     pub(super) fn measure(&self, at_lines: bool, cancel: &AtomicBool) -> Result<Found> {
-        let check = || match cancel.load(Ordering::Relaxed) {
-            true => Err(Error::canceled()),
-            false => Ok(()),
-        };
         let bounds = self.all.tiling.bounds(self.at);
         let blocks = self.all.blocks_of(self.at).par_chunks(IN_ROW[0]);
         let of_heights = blocks.map(|blocks| {
-            check()?;
+            go_on(cancel)?;
             self.of_blocks(blocks, bounds)
         });
         let edges = self.all.edges_of(self.at)?;
         let of_lines = edges.par_chunks(IN_ROW[1]).map(|edges| {
-            check()?;
+            go_on(cancel)?;
             Ok(self.of_edges(edges, bounds, at_lines))
         });
         of_heights
