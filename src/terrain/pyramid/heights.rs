@@ -52,7 +52,8 @@ impl Heights {
     /// If the vertices cannot be read.
     pub(super) fn new(
         vertices: RecordFile<3>,
-        (lines, edges): (TileLines, SortedRecords<6>),
+        lines: TileLines,
+        edges: SortedRecords<6>,
         tiling: Tiling,
         finest: u8,
         fill: Option<f64>,

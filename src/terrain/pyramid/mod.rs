@@ -102,7 +102,7 @@ impl Pyramid {
             level.tiles = tiles;
         }
         Ok(Pyramid {
-            heights: Heights::new(vertices.file, (lines, edges), tiling, finest, rule.fill)?,
+            heights: Heights::new(vertices.file, lines, edges, tiling, finest, rule.fill)?,
             levels,
         })
     }

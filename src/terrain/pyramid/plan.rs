@@ -2,6 +2,7 @@
 
 use rustc_hash::FxHashSet;
 
+use super::intake::ToEarth;
 use super::keys::owner;
 use crate::data::{TilePosition, Tiling};
 use crate::error::{Error, Result, Setting, wording};
@@ -13,7 +14,7 @@ const MAX_TILES: usize = 1 << 22;
 pub(super) fn to_earth(
     positions: &mut [[f64; 3]],
     tiling: Tiling,
-    convert: &(dyn Fn(&mut [[f64; 3]]) -> Result<()> + Sync),
+    convert: &ToEarth,
 ) -> Result<()> {
     let before = positions.to_vec();
     convert(positions)?;
