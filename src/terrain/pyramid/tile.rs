@@ -11,6 +11,8 @@ use super::rule::Level;
 use crate::data::{TerrainTile, TilePosition, Tiling};
 use crate::error::{Error, Result};
 use crate::terrain::admitted::searched;
+use crate::terrain::in_order::by_coordinates;
+use crate::terrain::linear::plan;
 use crate::terrain::sample::along_curve;
 use crate::terrain::simplify::choose_around;
 use crate::triangulation::geometry::Terrain;
@@ -106,11 +108,9 @@ fn chosen(
     cancel: &AtomicBool,
 ) -> Result<Delaunay<Terrain, 3>> {
     sites.sort_unstable_by(|(p, p_stays), (q, q_stays)| {
-        let axis = |k: usize| p[k].total_cmp(&q[k]);
-        axis(0)
-            .then(axis(1))
+        by_coordinates(&plan(*p), &plan(*q))
             .then(q_stays.cmp(p_stays))
-            .then(axis(2))
+            .then(p[2].total_cmp(&q[2]))
     });
     sites.dedup_by(|(q, _), (p, _)| p[0] == q[0] && p[1] == q[1]);
     let stay: Vec<u32> = (0..sites.len() as u32)
