@@ -57,13 +57,14 @@ pub fn tiles_below(at: TilePosition, levels: &[&[TilePosition]]) -> Option<Strin
         return None;
     }
     let below = |deeper: u8| {
-        let tiles = levels.get(usize::from(at.level + deeper))?;
-        let [columns, rows] = [at.column, at.row].map(|n| n << deeper..(n + 1) << deeper);
+        let tiles = levels.get(usize::from(at.level) + usize::from(deeper))?;
+        let range = |n: u32| u64::from(n) << deeper..(u64::from(n) + 1) << deeper;
+        let [columns, rows] = [at.column, at.row].map(range);
         let [first, end] = [columns.start, columns.end]
-            .map(|column| tiles.partition_point(|tile| tile.column < column));
+            .map(|column| tiles.partition_point(|tile| u64::from(tile.column) < column));
         let inside = tiles[first..end]
             .iter()
-            .filter(|tile| rows.contains(&tile.row));
+            .filter(|tile| rows.contains(&u64::from(tile.row)));
         Some(ranges(&inside.copied().collect::<Vec<_>>()))
     };
     let available: Vec<Vec<Value>> = (1..=LISTED).map_while(below).collect();
