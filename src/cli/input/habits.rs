@@ -54,19 +54,7 @@ use Meaning::{
     Condition, Corners, Creation, Format, Input, List, Nothing, Refused, Same, Square, Words,
 };
 
-const RASTERS: &[&str] = &[
-    "dem",
-    "hillshade",
-    "color-relief",
-    "slope",
-    "aspect",
-    "curvature",
-    "roughness",
-    "tri",
-    "tpi",
-    "compare",
-];
-/// The verbs whose outputs drivers of GDAL may write.
+/// The verbs whose outputs drivers of GDAL may write: rasters, then those of lines.
 const DRIVEN: &[&str] = &[
     "dem",
     "hillshade",
@@ -81,6 +69,7 @@ const DRIVEN: &[&str] = &[
     "contour",
     "drape",
 ];
+const RASTERS: &[&str] = DRIVEN.split_at(DRIVEN.len() - 2).0;
 const CONTOUR: &[&str] = &["contour"];
 const SHADE: &[&str] = &["hillshade"];
 const COLOR: &[&str] = &["color-relief"];
