@@ -194,20 +194,11 @@ fn write_file(
     messages::listen();
     let failed = |error| refused(&path, target.path(), error);
     let mut dataset = create(&own, &path, &driver.creation).map_err(failed)?;
-    let mut warnings = Vec::new();
     let paths = Paths {
         path: &path,
         target: target.path(),
     };
-    add_layer(
-        &mut dataset,
-        &name,
-        driver,
-        head,
-        paths,
-        fill,
-        &mut warnings,
-    )?;
+    let mut warnings = add_layer(&mut dataset, &name, driver, head, paths, fill)?;
     dataset.close().map_err(failed)?;
     paths.require_no_failure()?;
     warnings.extend(messages::warning_texts(&path, target.path()));
@@ -262,7 +253,7 @@ impl Paths<'_> {
     }
 }
 
-/// Creates a layer and fills it.
+/// Creates a layer and fills it. Returns warnings.
 fn add_layer(
     dataset: &mut Dataset,
     name: &str,
@@ -270,9 +261,9 @@ fn add_layer(
     head: &Head,
     paths: Paths,
     fill: &mut Fill,
-    warnings: &mut Vec<String>,
-) -> Result<()> {
-    let reference = head.reference(warnings);
+) -> Result<Vec<String>> {
+    let mut warnings = Vec::new();
+    let reference = head.reference(&mut warnings);
     let options: Vec<&str> = driver.layer.iter().map(String::as_str).collect();
     let layer = dataset
         .create_layer(LayerOptions {
@@ -336,7 +327,8 @@ fn add_layer(
         paths,
         count: 0,
     };
-    fill(&mut records)
+    fill(&mut records)?;
+    Ok(warnings)
 }
 
 /// A layer that is being filled.
@@ -500,16 +492,7 @@ fn write_table(
             .delete_layer(at)
             .map_err(|error| paths.refused(error))?;
     }
-    let mut warnings = Vec::new();
-    add_layer(
-        &mut pending.dataset,
-        table,
-        driver,
-        head,
-        paths,
-        fill,
-        &mut warnings,
-    )?;
+    let mut warnings = add_layer(&mut pending.dataset, table, driver, head, paths, fill)?;
     pending
         .dataset
         .flush_cache()
