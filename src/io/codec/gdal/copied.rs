@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use gdal::raster::RasterCreationOptions;
 use gdal::{Dataset, Driver};
 
+use super::drivers::AS_GEOTIFF;
 use super::raster::open_raster;
 use super::{DriverContent, drivers, messages};
 use crate::data::{BlockSource, Window};
@@ -52,8 +53,10 @@ pub(crate) fn write_raster(
         let is_rounded = content == DriverContent::Heights && stored.starts_with("Int");
         if is_rounded {
             require_range(stored, &summary, &driver.name)?;
-            let rounded = "heights are rounded: the driver {} stores whole numbers";
-            warnings.push(rounded.replace("{}", &driver.name));
+            warnings.push(format!(
+                "heights are rounded: the driver {} stores whole numbers",
+                driver.name
+            ));
         }
         let done = folder.path().join("done");
         std::fs::create_dir(&done)?;
@@ -94,7 +97,8 @@ fn require_range(stored: &str, summary: &RasterSummary, driver: &str) -> Result<
     };
     match summary.min < low || summary.max > high {
         true => Err(Error::limit(format!(
-            "heights from {} to {}, where the driver {driver} stores whole numbers from {low} to {high}",
+            "heights from {} to {}, where the driver {driver} stores whole numbers from {low} \
+             to {high}",
             summary.min, summary.max
         ))
         .cure(AS_GEOTIFF)),
@@ -163,9 +167,6 @@ fn losses(given: &Path, copy: &Path, target: &Path) -> Result<Vec<String>> {
         )],
     })
 }
-
-/// What is written instead of a format that does not suffice.
-const AS_GEOTIFF: &str = "write a GeoTIFF (.tif)";
 
 /// Cells that are compared at a time, roughly.
 const COMPARED: usize = 1 << 20;

@@ -23,6 +23,9 @@ const NOT_KEPT: &[(&str, &str)] = &[
     ("WMTS", "refers to a service"),
 ];
 
+/// The cure if a driver cannot store a raster.
+pub(super) const AS_GEOTIFF: &str = "write a GeoTIFF (.tif)";
+
 /// Returns the name of the driver that writes an output: the one that is named, else the one for
 /// the extension or the beginning of the path; `None` if there is none.
 ///
@@ -174,7 +177,7 @@ pub(super) fn cell_type(driver: &Driver, content: DriverContent) -> Result<&'sta
             driver.short_name(),
             known.join(", ")
         );
-        Error::usage(error).cure("write a GeoTIFF (.tif)")
+        Error::usage(error).cure(AS_GEOTIFF)
     })
 }
 
@@ -206,8 +209,6 @@ fn listed(xml: &str) -> Vec<DriverOption> {
             Ok(Event::Start(element) | Event::Empty(element)) => match element.name().as_ref() {
                 "Option" => {
                     let name = attribute(&element, "name").unwrap_or_default();
-                    // Not only the listed names of these: GDAL takes numbers and other words for
-                    // some of them.
                     options.push(DriverOption {
                         name,
                         values: Vec::new(),

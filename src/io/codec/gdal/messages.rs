@@ -107,7 +107,8 @@ pub(super) fn cannot_open(path: &Path, what: &str, returned: GdalError) -> Error
     }
     match failure(path) {
         Some(error) if is_name(path) => error.cure(
-            "`gdalinfo` or `ogrinfo` shows what GDAL finds there; only rasters and layers have such names",
+            "`gdalinfo` or `ogrinfo` shows what GDAL finds there; only rasters and layers have \
+             such names",
         ),
         Some(error) => error,
         None => match returned {
