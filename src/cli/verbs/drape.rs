@@ -7,7 +7,7 @@ use super::product::{self, Answer, Outcome, Product, ProductPlan};
 use crate::cli::Exit;
 use crate::cli::input::args::DrapeArgs;
 use crate::cli::input::inputs;
-use crate::cli::input::outputs::{Formats, Target, formats_of};
+use crate::cli::input::outputs::{Formats, Target};
 use crate::cli::input::plan::SurfacePlan;
 use crate::cli::report::console::Console;
 use crate::cli::report::summary::counted;
@@ -15,7 +15,6 @@ use crate::data::{Layer, Shape};
 use crate::error::Result;
 use crate::io::OutputSet;
 use crate::io::formats::Product as Contents;
-use crate::io::gdal::DriverContent;
 use crate::run::{self, Context, DrapeOptions, DrapeProduct, Input, SurfaceProduct};
 
 /// Drapes lines over a surface.
@@ -43,11 +42,7 @@ impl<'a> Drape<'a> {
         pair::refuse_tables(&args.surface, "drape")?;
         let surface = SurfacePlan::resolve(&args.surface, console)?;
         let options = args.driver.options();
-        let formats = Formats {
-            all: formats_of(Contents::Lines, |_| ()).into(),
-            driver: Some(&options),
-            of_gdal: Some((DriverContent::Shapes, ())),
-        };
+        let formats = Formats::of_product(Contents::Lines, &options);
         let lines = args.lines.clone();
         let (plan, targets) = ProductPlan::resolve(vec![surface], [lines], &args.output, formats)?;
         Ok(Drape {

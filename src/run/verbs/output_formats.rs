@@ -72,6 +72,18 @@ impl<'a, F: Clone> From<&'a [Format<F>]> for Formats<'a, F> {
     }
 }
 
+impl<'a> Formats<'a, ()> {
+    /// Returns the formats of a product: those of this crate, and those of GDAL's drivers if they
+    /// write such data.
+    pub(crate) fn of_product(product: Product, driver: &'a DriverOptions) -> Self {
+        Formats {
+            all: formats_of(product, |_| ()).into(),
+            driver: Some(driver),
+            of_gdal: gdal_content(product).map(|content| (content, ())),
+        }
+    }
+}
+
 impl<F: Copy> Formats<'_, F> {
     /// Returns the format of an output, and the driver that writes it unless this crate does.
     ///
@@ -194,7 +206,7 @@ fn require_as_written<F>(format: &Format<F>, options: &DriverOptions) -> Result<
 }
 
 /// Returns what drivers of GDAL write of a product; `None` if they write nothing of it.
-pub(crate) fn gdal_content(product: Product) -> Option<DriverContent> {
+fn gdal_content(product: Product) -> Option<DriverContent> {
     match product {
         Product::Heights => Some(DriverContent::Heights),
         Product::Shades => Some(DriverContent::Shades),

@@ -4,10 +4,10 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
+use super::output_formats::find;
+pub(crate) use super::output_formats::{Format, Formats, TABLES};
 #[cfg(feature = "cli")]
-pub(crate) use super::output_formats::PROFILES;
-pub(crate) use super::output_formats::{Format, Formats, TABLES, formats_of};
-use super::output_formats::{find, gdal_content};
+pub(crate) use super::output_formats::{PROFILES, formats_of};
 use crate::error::{Error, Result, Setting, wording};
 use crate::io::formats::{self, Product};
 use crate::io::gdal;
@@ -129,14 +129,10 @@ impl Targets {
         is_own: &dyn Fn(&Path) -> bool,
     ) -> Result<Outputs> {
         let may_replace = |file: &Path| self.existing == Existing::Replace || is_own(file);
-        let may_be = |product| Formats {
-            all: formats_of(product, |_| ()).into(),
-            driver: Some(&self.driver),
-            of_gdal: gdal_content(product).map(|content| (content, ())),
-        };
-        let mut outputs = resolve(&self.files, &may_replace, &may_be(product), read)?;
+        let formats = Formats::of_product(product, &self.driver);
+        let mut outputs = resolve(&self.files, &may_replace, &formats, read)?;
         if let Some(labels) = &self.labels {
-            let formats = may_be(Product::Lines);
+            let formats = Formats::of_product(Product::Lines, &self.driver);
             let found = resolve(std::slice::from_ref(labels), &may_replace, &formats, read)?;
             outputs.labels = found.targets.into_iter().next();
             if let Some(labels) = &mut outputs.labels {
