@@ -23,7 +23,7 @@ const DRIVERS: &[(&str, &str, &[&str])] = &[
     ("netCDF", "a.nc", &[]),
 ];
 
-/// Of these, those whose lines have no heights when GDAL reads them.
+/// The drivers of [`DRIVERS`] that write lines which GDAL reads without heights.
 const FLAT: &[&str] = &["MapML"];
 
 fn read(folder: &TempDir, name: &str) -> Layer {

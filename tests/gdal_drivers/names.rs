@@ -60,6 +60,13 @@ fn zip(files: &[(&str, Vec<u8>)]) -> Vec<u8> {
     archive
 }
 
+/// The files of the contours.
+const LINES: [&str; 4] = ["lines.shp", "lines.shx", "lines.dbf", "lines.prj"];
+
+fn bytes_of(folder: &TempDir, name: &str) -> Vec<u8> {
+    std::fs::read(folder.path().join(name)).unwrap()
+}
+
 /// A folder with the surface, a DEM, its contours as a shapefile, and archives of both.
 fn archives() -> TempDir {
     let folder = surface();
@@ -70,18 +77,11 @@ fn archives() -> TempDir {
         &["-o", "lines.shp"],
     )
     .works(&[]);
-    let read = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
-    let names = [
-        "dem.tif",
-        "lines.shp",
-        "lines.shx",
-        "lines.dbf",
-        "lines.prj",
-    ];
-    let files: Vec<(&str, Vec<u8>)> = names.iter().map(|&name| (name, read(name))).collect();
+    let names = ["dem.tif"].into_iter().chain(LINES);
+    let files: Vec<(&str, Vec<u8>)> = names.map(|name| (name, bytes_of(&folder, name))).collect();
     std::fs::write(folder.path().join("all.zip"), zip(&files)).unwrap();
     let mut packed = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
-    packed.write_all(&read("dem.tif")).unwrap();
+    packed.write_all(&bytes_of(&folder, "dem.tif")).unwrap();
     std::fs::write(folder.path().join("dem.tif.gz"), packed.finish().unwrap()).unwrap();
     folder
 }
@@ -89,7 +89,7 @@ fn archives() -> TempDir {
 #[test]
 fn archives_are_read_in_place() {
     let folder = archives();
-    let read = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
+    let read = |name: &str| bytes_of(&folder, name);
     run(&folder, &["hillshade", "dem.tif", "-o", "direct.tif"]).works(&[]);
     for name in ["/vsizip/all.zip/dem.tif", "/vsigzip/dem.tif.gz"] {
         run(&folder, &["hillshade", name, "-o", "by.tif", "--overwrite"]).works(&[]);
@@ -331,21 +331,9 @@ fn answer(mut stream: TcpStream, files: &HashMap<String, Vec<u8>>) -> std::io::R
 #[test]
 fn files_on_a_server_are_read() {
     let folder = archives();
-    let read = |name: &str| std::fs::read(folder.path().join(name)).unwrap();
-    let files = [
-        "dem.tif",
-        "all.zip",
-        "lines.shp",
-        "lines.shx",
-        "lines.dbf",
-        "lines.prj",
-    ];
-    let port = serve(
-        files
-            .iter()
-            .map(|name| (format!("/{name}"), read(name)))
-            .collect(),
-    );
+    let read = |name: &str| bytes_of(&folder, name);
+    let files = ["dem.tif", "all.zip"].into_iter().chain(LINES);
+    let port = serve(files.map(|name| (format!("/{name}"), read(name))).collect());
     run(&folder, &["hillshade", "dem.tif", "-o", "direct.tif"]).works(&[]);
     for name in [
         format!("/vsicurl/http://127.0.0.1:{port}/dem.tif"),

@@ -1,4 +1,4 @@
-//! Outputs by drivers, run_verb in tiles.
+//! Outputs by drivers, in tiles.
 
 use breakline::io::gdal::open_raster;
 
