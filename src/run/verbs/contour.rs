@@ -45,7 +45,7 @@ impl Verb for ContourOptions {
 
     fn use_of_tiles(&self, targets: &[Target]) -> Result<TileUse> {
         if let Some(table) = targets.iter().find(|of| gdal::is_connection(&of.path)) {
-            let error = "a job keeps track of its files, and a table of a database is none";
+            let error = "a job keeps track of its files, and a table of a database is not a file";
             let error = Error::usage(error).in_file(&table.path);
             return Ok(TileUse::Never(
                 error.cure(wording!["write a file, or leave out ", Setting::Tiles]),

@@ -9,8 +9,8 @@ pub(crate) struct DriverArgs {
     /// Driver of GDAL that writes the output (also `-of`), as `gdalinfo --formats` lists them
     ///
     /// Without it, the extension of the output selects a format of this program (see `--help`), or
-    /// else a driver. Names of such formats, as GTiff, mean those of this program. Needs a build
-    /// with the feature `gdal`.
+    /// else a driver. A name of a format that this program writes, such as GTiff, means that one.
+    /// Needs a build with the feature `gdal`.
     #[arg(long, value_name = "DRIVER")]
     pub(crate) of: Option<String>,
 

@@ -14,7 +14,7 @@ use crate::io::bytes::output::DriverOptions;
 /// The drivers that are meant if several write an extension.
 const PREFERRED: &[&str] = &["netCDF", "LIBKML", "OpenFileGDB"];
 
-/// Drivers whose outputs are not there, or of no use, once the program has ended.
+/// Drivers whose outputs are missing or useless once the program has ended, and why.
 const NOT_KEPT: &[(&str, &str)] = &[
     ("VRT", "refers to another file"),
     ("MEM", "keeps nothing"),
