@@ -16,7 +16,7 @@ use gdal_sys::OGRwkbGeometryType as Type;
 use super::{drivers, messages, names};
 use crate::crs::Crs;
 use crate::data::{Attributes, ContourLine, Layer, Shape, ShapeKind, Value, ValueKind, polygons};
-use crate::error::{Error, Result, Setting, wording};
+use crate::error::{Error, Kind, Result, Setting, wording};
 use crate::io::bytes::appended::appended;
 use crate::io::bytes::output::{Deferred, Destination, OutputDriver};
 use crate::io::codec::contour_summary::ContourSummary;
@@ -191,15 +191,15 @@ fn write_file(
         .file_stem()
         .unwrap_or_default()
         .to_string_lossy();
-    messages::listen();
-    let failed = |error| refused(&path, target.path(), error);
-    let mut dataset = create(&own, &path, &driver.creation).map_err(failed)?;
     let paths = Paths {
         path: &path,
         target: target.path(),
     };
+    messages::listen();
+    let mut dataset =
+        create(&own, &path, &driver.creation).map_err(|error| paths.refused(error))?;
     let mut warnings = add_layer(&mut dataset, &name, driver, head, paths, fill)?;
-    dataset.close().map_err(failed)?;
+    dataset.close().map_err(|error| paths.refused(error))?;
     paths.require_no_failure()?;
     warnings.extend(messages::warning_texts(&path, target.path()));
     let stale = [".aux.xml"].map(|end| appended(target.path(), end));
@@ -230,12 +230,6 @@ fn create(driver: &Driver, path: &Path, options: &[String]) -> gdal::errors::Res
     }
 }
 
-/// Returns the error of a driver that could not write, preferring the captured message.
-fn refused(path: &Path, target: &Path, error: GdalError) -> Error {
-    messages::refusal(path, target)
-        .unwrap_or_else(|| Error::caused_by(crate::error::Kind::Unsupported, error).in_file(target))
-}
-
 /// Where a layer is written, and where it will appear.
 #[derive(Clone, Copy)]
 struct Paths<'a> {
@@ -248,8 +242,10 @@ impl Paths<'_> {
         messages::refusal(self.path, self.target).map_or(Ok(()), Err)
     }
 
+    /// Returns the error of a driver that could not write, preferring the captured message.
     fn refused(self, error: GdalError) -> Error {
-        refused(self.path, self.target, error)
+        messages::refusal(self.path, self.target)
+            .unwrap_or_else(|| Error::caused_by(Kind::Unsupported, error).in_file(self.target))
     }
 }
 
@@ -287,7 +283,6 @@ fn add_layer(
     let can_add = layer.has_capability(LayerCaps::OLCCreateField);
     let mut left_out = Vec::new();
     for (name, field_type) in &head.fields {
-        let before = layer.defn().fields().count();
         // Of a fixed set of attributes, some may have the name.
         let fixed = layer
             .defn()
@@ -296,6 +291,7 @@ fn add_layer(
         let at = match fixed {
             Some(at) => Some(at),
             None if can_add => {
+                let before = layer.defn().fields().count();
                 layer
                     .create_defn_fields(&[(name.as_str(), *field_type)])
                     .map_err(|error| paths.refused(error))?;
