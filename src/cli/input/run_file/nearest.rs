@@ -2,8 +2,8 @@
 
 use strsim::osa_distance;
 
-/// Returns the known name from which fewest letters differ, if those are a third at most. Two
-/// letters that are swapped count as one.
+/// Returns the known name that differs in the fewest letters, if these are at most a third of the
+/// letters of `name`. Two swapped letters count as one.
 pub(super) fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let most = name.chars().count().div_ceil(3);
     let name = name.replace('_', "-");
