@@ -177,10 +177,10 @@ pub fn without_secrets(text: &str) -> Cow<'_, str> {
         return Cow::Borrowed(text);
     }
     let shown = hidden(text);
-    // Names of layers may follow, and differ.
-    let (name, _) = split(&shown);
-    let name = name.to_string_lossy().into_owned();
-    if let Cow::Owned(_) = &shown {
+    if let Cow::Owned(shown) = &shown {
+        // Names of layers may follow, and differ.
+        let (name, _) = split(shown);
+        let name = name.to_string_lossy().into_owned();
         let names = shown.len() - name.len();
         let secret = text[..text.len() - names].to_owned();
         let mut secrets = SECRETS.lock().unwrap_or_else(PoisonError::into_inner);
