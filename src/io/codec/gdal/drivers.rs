@@ -142,11 +142,16 @@ fn by_path(path: &Path, content: DriverContent) -> Result<Option<Driver>> {
 
 /// Returns true if a driver creates data sets with such data.
 fn writes(driver: &Driver, content: DriverContent) -> bool {
-    let can = |capability: &str| driver.metadata_item(capability, "").as_deref() == Some("YES");
+    let can = |capability: &str| can(driver, capability);
     match content {
         DriverContent::Shapes => can("DCAP_VECTOR") && can("DCAP_CREATE"),
         _ => can("DCAP_RASTER") && (can("DCAP_CREATE") || can("DCAP_CREATECOPY")),
     }
+}
+
+/// Returns true if a driver states a capability.
+fn can(driver: &Driver, capability: &str) -> bool {
+    driver.metadata_item(capability, "").as_deref() == Some("YES")
 }
 
 /// Returns the type of cells by which a driver stores a raster, in GDAL's words: the first that it
@@ -183,7 +188,7 @@ pub(super) fn cell_type(driver: &Driver, content: DriverContent) -> Result<&'sta
 
 /// Returns true if a driver copies data sets itself, and says what it cannot keep.
 pub(super) fn copies_itself(driver: &Driver) -> bool {
-    driver.metadata_item("DCAP_CREATECOPY", "").as_deref() == Some("YES")
+    can(driver, "DCAP_CREATECOPY")
 }
 
 /// An option of a driver, as its description lists it.
