@@ -34,8 +34,8 @@ pub(crate) enum TerrainFormatArg {
 /// `layer.json`, in a folder that a web server can serve as it is. No vertex of the surface and no
 /// line of it is further from the triangles of a level than its bound, which is measured on the
 /// tiles as they are written. Where it does not hold, a warning says which one does. Tiles of a
-/// level have the same vertices on a common border. Points that would not fit into memory are made
-/// to a TIN in files first, and the tiles are the same.
+/// level have the same vertices on a common border. Of points that would not fit into memory, a TIN
+/// is built in files first; the tiles are the same.
 ///
 /// Positions are transformed to longitude and latitude by PROJ, in a build that has it. Heights
 /// must be above the ellipsoid of WGS 84, see --vertical-offset.
