@@ -260,7 +260,7 @@ fn passwords_are_nowhere() {
     )
     .fails(
         2,
-        &["this output is a file, or for lines also a table of a database"],
+        &["outputs are files, or for lines also tables of databases"],
     );
 }
 

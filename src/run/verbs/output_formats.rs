@@ -131,11 +131,11 @@ impl<F: Copy> Formats<'_, F> {
         let has_shapes = matches!(self.of_gdal, Some((DriverContent::Shapes, _)));
         let is_table = || has_shapes && gdal::is_connection(path);
         match gdal::is_name(path) && !is_table() {
-            true => Err(Error::usage(
-                "this output is a file, or for lines also a table of a database",
-            )
-            .in_file(path)
-            .cure("write it to a file, and copy that")),
+            true => Err(
+                Error::usage("outputs are files, or for lines also tables of databases")
+                    .in_file(path)
+                    .cure("write it to a file, and copy that"),
+            ),
             false => Ok(()),
         }
     }
