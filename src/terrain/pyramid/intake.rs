@@ -8,7 +8,7 @@ use rustc_hash::FxHashMap;
 
 use super::keys::key_of;
 use super::lines::{Lines, OnLines, TileLines};
-use super::plan::{FinestTiles, to_earth};
+use super::plan::{FinestTiles, ToEarth, to_earth};
 use super::records::{Record, RecordFile, SortedRecords, Sorter};
 use crate::data::{EdgeKind, Surface, Tiling, area_of, map_batches};
 use crate::error::{Error, Result};
@@ -18,10 +18,6 @@ use crate::terrain::in_order::by_coordinates;
 /// Calls a function with each part of a surface, one after the other. A surface in one piece is its
 /// only part.
 pub type SurfaceParts<'a> = dyn Fn(&mut dyn FnMut(&dyn Surface) -> Result<()>) -> Result<()> + 'a;
-
-/// Turns positions of a surface, some at a time, into longitudes and latitudes with heights in
-/// meters.
-pub type ToEarth<'a> = dyn Fn(&mut [[f64; 3]]) -> Result<()> + Sync + 'a;
 
 /// The unit in which areas are summed, in tiles of the coarsest level: a power of two, far below
 /// the area of any triangle.

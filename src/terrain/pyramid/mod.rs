@@ -37,7 +37,8 @@ use rayon::prelude::*;
 
 use self::heights::Heights;
 use self::intake::{Intake, Triangles};
-pub use self::intake::{SurfaceParts, ToEarth};
+pub use self::intake::SurfaceParts;
+pub use self::plan::ToEarth;
 pub use self::report::TileReport;
 pub(crate) use self::rule::is_height;
 pub use self::rule::{Level, PyramidRule};

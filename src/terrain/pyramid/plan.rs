@@ -2,13 +2,16 @@
 
 use rustc_hash::FxHashSet;
 
-use super::intake::ToEarth;
 use super::keys::owner;
 use crate::data::{TilePosition, Tiling};
 use crate::error::{Error, Result, Setting, wording};
 
 /// The largest number of tiles of all levels together.
 const MAX_TILES: usize = 1 << 22;
+
+/// Turns positions of a surface, some at a time, into longitudes and latitudes with heights in
+/// meters.
+pub type ToEarth<'a> = dyn Fn(&mut [[f64; 3]]) -> Result<()> + Sync + 'a;
 
 /// Turns positions of a surface into those of a tiling, and checks them.
 pub(super) fn to_earth(
