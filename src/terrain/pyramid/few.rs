@@ -17,11 +17,11 @@ use crate::terrain::simplify::choose_around;
 type Few = Mutex<FxHashMap<TilePosition, Vec<[f64; 3]>>>;
 
 impl Heights {
-    /// For each tile with more heights than are looked at together, chooses few of them, by which
-    /// each of its four quarters is simplified within the bound of their level.
+    /// For each tile with more heights than are looked at together, chooses few of them: those that
+    /// remain when each of its four quarters is simplified within the bound of their level.
     ///
-    /// The sum of bounds is not a bound: what is chosen from these is to be measured against all
-    /// heights.
+    /// The sum of the bounds of finer levels is not a bound: a tile that is made from these must be
+    /// measured against all heights.
     ///
     /// # Errors
     /// If heights cannot be read, or the run is canceled.

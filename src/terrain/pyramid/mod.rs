@@ -36,8 +36,8 @@ use std::sync::atomic::AtomicBool;
 use rayon::prelude::*;
 
 use self::heights::Heights;
-use self::intake::{Intake, Triangles};
 pub use self::intake::SurfaceParts;
+use self::intake::{Intake, Triangles};
 pub use self::plan::ToEarth;
 pub use self::report::TileReport;
 pub(crate) use self::rule::is_height;
@@ -84,6 +84,7 @@ impl Pyramid {
             cancel,
         };
         let vertices = intake.vertices()?;
+        // The number of heights, if the surface has as many everywhere.
         let in_tile = |level: u8| {
             let side = 1.0 / f64::from(1_u32 << level);
             let count = vertices.file.count() as f64;

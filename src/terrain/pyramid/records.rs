@@ -1,4 +1,4 @@
-//! Records in the order of their keys, of which memory need not have room for all.
+//! Records in the order of their keys; memory need not have room for all of them.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;

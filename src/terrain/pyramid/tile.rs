@@ -43,7 +43,7 @@ struct Frame {
 /// the lines that cross there.
 pub(super) type Outside = Vec<([u32; 2], f64)>;
 
-/// Makes one tile, and what the tiles below it have to know of it.
+/// Makes one tile. Also returns the heights that the tiles below it need.
 pub(super) fn tile(
     all: &Heights,
     level: &Level,
