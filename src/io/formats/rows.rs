@@ -7,9 +7,16 @@ use super::format::{
 use crate::data::PointInfo;
 use crate::error::{Command, Feature, Wording, wording};
 use crate::io::bytes::output::Destination;
-use crate::io::codec::las::{Detail, Rounding};
+use crate::io::codec::las::{Detail, Packing, Rounding};
 use crate::io::codec::{gpkg, las, tetgen, text, triangle};
 
+const LIDAR_POINTS: &[Holding] = &[Holding::Points, Holding::Attributes, Holding::Crs];
+pub(super) const PACKED_LIDAR_POINTS: &[Holding] = &[
+    Holding::Points,
+    Holding::Attributes,
+    Holding::Crs,
+    Holding::Compression,
+];
 pub(super) const SHAPES: &[Holding] = &[Holding::Points, Holding::Lines, Holding::Polygons];
 pub(super) const SHAPES_AND_CRS: &[Holding] = &[
     Holding::Points,
@@ -57,7 +64,7 @@ pub(super) const ROW: Format = Format {
     help: "",
 };
 
-pub(super) const LIDAR: FormatReader = FormatReader::Points {
+const LIDAR: FormatReader = FormatReader::Points {
     file: |path, options| Ok(Box::new(las::open_with(path, options.las())?)),
     stream: |stream, name, options| {
         Ok(Box::new(las::from_stream_with(
@@ -79,16 +86,17 @@ pub(super) const DATABASE: FormatReader = match gpkg::IS_AVAILABLE {
     false => FormatReader::Gdal,
 };
 
-pub(super) const fn lidar_writer(
-    create: for<'a> fn(Destination<'a>, &[&PointInfo], Rounding) -> Sink<'a>,
-) -> Writers {
-    Writers {
-        points: Some(PointWriter {
-            detail: Detail::Records,
-            create,
-        }),
-        ..NOT_WRITTEN
-    }
+/// Creates a writer of lidar points.
+///
+/// # Errors
+/// Those of [`las::create`].
+pub(super) fn lidar_sink<'a>(
+    target: Destination<'a>,
+    sources: &[&PointInfo],
+    rounding: Rounding,
+    packing: Packing,
+) -> Sink<'a> {
+    Ok(Box::new(las::create(target, sources, packing, rounding)?))
 }
 
 pub(super) const fn layer_writers(contours: WriteContours, lines: WriteLines) -> Writers {
@@ -106,7 +114,8 @@ pub(super) const fn surface_writer(write: WriteSurface) -> Writers {
     }
 }
 
-pub(super) const fn raster(
+/// Returns a row with names and first bytes.
+const fn named(
     name: &'static str,
     noun: &'static str,
     extensions: &'static [&'static str],
@@ -117,10 +126,43 @@ pub(super) const fn raster(
         noun,
         extensions,
         magic,
+        ..ROW
+    }
+}
+
+/// Returns the row for uncompressed lidar points, whose writer `create` makes.
+pub(super) const fn lidar(
+    name: &'static str,
+    noun: &'static str,
+    extensions: &'static [&'static str],
+    create: for<'a> fn(Destination<'a>, &[&PointInfo], Rounding) -> Sink<'a>,
+) -> Format {
+    Format {
+        known_by: KnownBy::Bytes,
+        holds: LIDAR_POINTS,
+        reader: LIDAR,
+        writers: Writers {
+            points: Some(PointWriter {
+                detail: Detail::Records,
+                create,
+            }),
+            ..NOT_WRITTEN
+        },
+        ..named(name, noun, extensions, &[Magic::At(0, b"LASF")])
+    }
+}
+
+pub(super) const fn raster(
+    name: &'static str,
+    noun: &'static str,
+    extensions: &'static [&'static str],
+    magic: &'static [Magic],
+) -> Format {
+    Format {
         content: Content::Raster,
         holds: &[Holding::Raster],
         cure: AS_RASTER,
-        ..ROW
+        ..named(name, noun, extensions, magic)
     }
 }
 
@@ -131,13 +173,9 @@ pub(super) const fn vector(
     magic: &'static [Magic],
 ) -> Format {
     Format {
-        name,
-        noun,
-        extensions,
-        magic,
         content: Content::Layer,
         holds: SHAPES,
-        ..ROW
+        ..named(name, noun, extensions, magic)
     }
 }
 
@@ -148,14 +186,10 @@ pub(super) const fn mesh(
     magic: &'static [Magic],
 ) -> Format {
     Format {
-        name,
-        noun,
-        extensions,
-        magic,
         content: Content::Mesh,
         holds: SURFACE,
         cure: AS_MESH,
-        ..ROW
+        ..named(name, noun, extensions, magic)
     }
 }
 
@@ -167,9 +201,6 @@ pub(super) const fn plane(
     help: &'static str,
 ) -> Format {
     Format {
-        name,
-        noun,
-        extensions,
         content: Content::Plane,
         reader: FormatReader::Own,
         writers: Writers {
@@ -178,7 +209,7 @@ pub(super) const fn plane(
         },
         cure: AS_PLANE,
         help,
-        ..ROW
+        ..named(name, noun, extensions, &[])
     }
 }
 
@@ -196,15 +227,12 @@ pub(super) const fn space(
     extensions: &'static [&'static str],
 ) -> Format {
     Format {
-        name,
-        noun,
-        extensions,
         reader: FormatReader::Unread,
         writers: Writers {
             space: Some(tetgen::write),
             ..NOT_WRITTEN
         },
         cure: AS_SPACE,
-        ..ROW
+        ..named(name, noun, extensions, &[])
     }
 }

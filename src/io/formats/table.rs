@@ -1,90 +1,53 @@
 //! The table of formats. Most rows override a few fields of another row: of [`ROW`], or of one that
-//! [`raster`], [`vector`], [`mesh`] or [`plane`] returns.
+//! [`lidar`], [`raster`], [`vector`], [`mesh`] or [`plane`] returns.
 
 use super::format::{
     Content, Format, FormatReader, Holding, KnownBy, Magic, NOT_WRITTEN, PointWriter, Writers,
 };
 use super::rows::{
-    AS_RASTER, DATABASE, LIDAR, PLANE_OR_SPACE, ROW, SHAPES_AND_CRS, SURFACE_AND_LINES, TEXT,
-    UNPACK, layer_writers, lidar_writer, mesh, plane, raster, space, surface_writer, vector,
+    AS_RASTER, DATABASE, PACKED_LIDAR_POINTS, PLANE_OR_SPACE, ROW, SHAPES_AND_CRS,
+    SURFACE_AND_LINES, TEXT, UNPACK, layer_writers, lidar, lidar_sink, mesh, plane, raster, space,
+    surface_writer, vector,
 };
 use crate::io::bytes::watch::bytes_of;
 use crate::io::codec::geotiff::CellFormat;
 use crate::io::codec::las::{Detail, Packing};
 use crate::io::codec::listing::Remarks;
 use crate::io::codec::{
-    ascii_grid, cityjson, dxf, flatgeobuf, geojson, geotiff, glb, gpkg, landxml, las, mesh2dm, obj,
-    off, ply, png, shapefile, stl, text, tin, triangle, ugrid, xyz_grid, zipped,
+    ascii_grid, cityjson, dxf, flatgeobuf, geojson, geotiff, glb, gpkg, landxml, mesh2dm, obj, off,
+    ply, png, shapefile, stl, text, tin, triangle, ugrid, xyz_grid, zipped,
 };
 
 /// All formats, in the order in which lists show them.
 pub static FORMATS: &[Format] = &[
     Format {
-        name: "LAS",
-        noun: "a LAS file",
-        extensions: &["las"],
-        magic: &[Magic::At(0, b"LASF")],
-        known_by: KnownBy::Bytes,
-        holds: &[Holding::Points, Holding::Attributes, Holding::Crs],
-        reader: LIDAR,
-        writers: lidar_writer(|target, sources, rounding| {
-            Ok(Box::new(las::create(
-                target,
-                sources,
-                Packing::Plain,
-                rounding,
-            )?))
-        }),
         help: "lidar points",
-        ..ROW
+        ..lidar(
+            "LAS",
+            "a LAS file",
+            &["las"],
+            |target, sources, rounding| lidar_sink(target, sources, rounding, Packing::Plain),
+        )
     },
     Format {
-        name: "COPC",
-        noun: "a COPC file",
-        extensions: &["copc.laz"],
-        magic: &[Magic::At(0, b"LASF")],
-        known_by: KnownBy::Bytes,
-        holds: &[
-            Holding::Points,
-            Holding::Attributes,
-            Holding::Crs,
-            Holding::Compression,
-        ],
-        reader: LIDAR,
-        writers: lidar_writer(|target, sources, rounding| {
-            Ok(Box::new(las::create(
-                target,
-                sources,
-                Packing::Octree,
-                rounding,
-            )?))
-        }),
+        holds: PACKED_LIDAR_POINTS,
         help: "lidar points, compressed, in an octree",
-        ..ROW
+        ..lidar(
+            "COPC",
+            "a COPC file",
+            &["copc.laz"],
+            |target, sources, rounding| lidar_sink(target, sources, rounding, Packing::Octree),
+        )
     },
     Format {
-        name: "LAZ",
-        noun: "a LAZ file",
-        extensions: &["laz"],
-        magic: &[Magic::At(0, b"LASF")],
-        known_by: KnownBy::Bytes,
-        holds: &[
-            Holding::Points,
-            Holding::Attributes,
-            Holding::Crs,
-            Holding::Compression,
-        ],
-        reader: LIDAR,
-        writers: lidar_writer(|target, sources, rounding| {
-            Ok(Box::new(las::create(
-                target,
-                sources,
-                Packing::Compressed,
-                rounding,
-            )?))
-        }),
+        holds: PACKED_LIDAR_POINTS,
         help: "lidar points, compressed",
-        ..ROW
+        ..lidar(
+            "LAZ",
+            "a LAZ file",
+            &["laz"],
+            |target, sources, rounding| lidar_sink(target, sources, rounding, Packing::Compressed),
+        )
     },
     Format {
         name: "text",
