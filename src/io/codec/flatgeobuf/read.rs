@@ -1,7 +1,7 @@
 //! Reading: all records, in the order of the file.
 
 use std::fs::File;
-use std::io::{BufReader, Read};
+use std::io::{BufReader, Read, Take};
 use std::path::Path;
 
 use super::buffer::{Buffer, Table};
@@ -122,25 +122,29 @@ impl<R: Read> Source<R> {
     /// Fills a list with the next bytes, which must be there.
     fn take(&mut self, count: u64, into: &mut Vec<u8>) -> Result<()> {
         into.clear();
-        if count > self.left {
-            return Err(self.cut());
-        }
-        self.left -= count;
-        let read = self.from.by_ref().take(count).read_to_end(into)?;
-        match read as u64 == count {
-            true => Ok(()),
-            // It became shorter while it was read.
-            false => Err(self.cut()),
-        }
+        self.pass(count, |mut next| {
+            next.read_to_end(into).map(|read| read as u64)
+        })
     }
 
     fn skip(&mut self, count: u64) -> Result<()> {
+        self.pass(count, |mut next| {
+            std::io::copy(&mut next, &mut std::io::sink())
+        })
+    }
+
+    /// Calls a function that reads the next bytes, which must be there, and returns how many it
+    /// found: fewer if the file became shorter while it was read.
+    fn pass(
+        &mut self,
+        count: u64,
+        read: impl FnOnce(Take<&mut R>) -> std::io::Result<u64>,
+    ) -> Result<()> {
         if count > self.left {
             return Err(self.cut());
         }
         self.left -= count;
-        let passed = std::io::copy(&mut self.from.by_ref().take(count), &mut std::io::sink())?;
-        match passed == count {
+        match read(self.from.by_ref().take(count))? == count {
             true => Ok(()),
             false => Err(self.cut()),
         }
