@@ -3,8 +3,8 @@
 use crate::crs::Crs;
 use crate::data::Layer;
 
-/// Returns the number of a system at EPSG, if the number says all of it. That of a system with
-/// heights is one of the plan: the heights are in the text alone.
+/// Returns the EPSG code of a system; `None` if it has none, or has heights, which the code does
+/// not state: it is that of the system in plan.
 pub(crate) fn code_of(crs: &Crs) -> Option<i32> {
     let code = crs.epsg.filter(|_| crs.vertical_unit.is_none())?;
     i32::try_from(code).ok()

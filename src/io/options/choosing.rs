@@ -89,7 +89,8 @@ impl Choosing<'_> {
     }
 }
 
-/// Returns how many shapes of a layer are chosen already; those behind them are not.
+/// Returns how many shapes of a layer are chosen already. For those after them, the condition was
+/// not evaluated yet.
 fn chosen(layer: &Layer) -> usize {
     layer.chosen.as_ref().map_or(0, Vec::len)
 }

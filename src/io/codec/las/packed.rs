@@ -6,7 +6,7 @@ use super::merge;
 use crate::data::LasHead;
 use crate::error::{Error, Kind, Result};
 
-/// Returns how LASzip divides a record.
+/// Returns the items into which LASzip divides a record, for the point format and extra bytes.
 ///
 /// # Errors
 /// If it does not know the point format.

@@ -27,8 +27,8 @@ pub enum Packing {
     /// Compressed (LAZ), in chunks of 50 000 points.
     Compressed,
     /// Compressed, in chunks that are the nodes of an octree (COPC 1.0). The points are in the
-    /// order of the nodes, and written when all are known; until then those of more than 256 MB
-    /// are in files without names next to the output.
+    /// order of the nodes, and written when all are known. Until then they are in memory, or above
+    /// 256 MB in files without names next to the output.
     Octree,
 }
 

@@ -28,7 +28,7 @@ const FINEST: u32 = 31;
 /// The deepest level that is written: its cells are those of the positions.
 const DEEPEST: u32 = FINEST - CELLS;
 
-/// Bits of the square of a distance from the center of a cell, in a slot.
+/// Bits of the number of a point in a slot; those above are the square of its distance.
 const NUMBER_BITS: u32 = 40;
 
 /// Bits by which a distance on one axis is measured.
@@ -86,7 +86,7 @@ impl Cube {
         }
     }
 
-    /// Returns the distance of the points of the first level.
+    /// Returns how far apart the points of the first level are, in units of the coordinates.
     pub(super) fn spacing(&self) -> f64 {
         2.0 * self.half / f64::from(1 << CELLS)
     }
@@ -227,7 +227,8 @@ impl Divider {
 /// The point of each cell of a node that is nearest to its center.
 struct Sample {
     level: u32,
-    /// Zero, or above the bits of the number the distance and one.
+    /// A slot for each cell: zero without a point, else the number of the point in the low
+    /// `NUMBER_BITS`, and above them the square of its distance from the center plus one.
     cells: Vec<u64>,
 }
 

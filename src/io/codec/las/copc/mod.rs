@@ -58,7 +58,7 @@ pub(super) fn info_record() -> Vec<u8> {
     record
 }
 
-/// Makes a head that of a COPC file: LAS 1.4 with the record for the octree first, and the
+/// Turns a head into that of a COPC file: LAS 1.4 with the record for the octree first, and the
 /// coordinate system of the sources as WKT. Returns how records have to be changed, if they are of
 /// a point format that LAS 1.4 has replaced.
 ///
@@ -91,7 +91,7 @@ pub(super) fn prepare(head: &mut LasHead, sources: &[&PointInfo]) -> Result<Opti
     {
         state_system(head, crs)?;
     }
-    // Without a system, too, unless it is in keys that are not understood.
+    // LAS 1.4 wants the bit without a system, too; keys that are not understood stay as keys.
     let is_key = |record: &Vec<u8>| is_of_system(record) && u16_at(record, 18) == KEYS;
     if !head.records.iter().any(is_key) {
         head.header[ENCODING] |= WKT_BIT;
