@@ -2,9 +2,9 @@
 
     python benches/writers.py FOLDER LINES.fgb SURFACE.ply POINTS.laz
 
-Needs `cargo build --release --features bench --example bench_writers`; trimesh and meshio for surfaces. Outputs go to the
-folder. Each time is the shortest of three. Those of breakline and of the packages are of writing alone, from memory;
-from that of ogr2ogr, the time is taken that GDAL needs to read the lines.
+Needs `cargo build --release --features bench --example bench_writers`; trimesh and meshio for surfaces. Outputs go to
+the folder. Each time is the shortest of three. Those of breakline and of the packages are of writing alone, from memory;
+those of ogr2ogr are printed with and without the time that GDAL needs to read the lines.
 """
 
 from __future__ import annotations
