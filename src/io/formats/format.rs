@@ -291,7 +291,7 @@ impl Format {
 
     pub(super) fn has_extension(&self, path: &Path) -> bool {
         let name = path.file_name().unwrap_or_default().as_encoded_bytes();
-        // Of two parts it may be, as in `copc.laz`.
+        // An extension may have two parts, as `copc.laz` does.
         let is_it = |known: &&str| {
             name.len().checked_sub(known.len()).is_some_and(|start| {
                 let (before, end) = name.split_at(start);

@@ -91,7 +91,7 @@ impl Cube {
         2.0 * self.half / f64::from(1 << CELLS)
     }
 
-    /// Returns where the point of a record is, in parts of the cube.
+    /// Returns where the point of a record is, in steps of 2^-31 of the side of the cube.
     fn site(&self, record: &[u8]) -> [u32; 3] {
         let steps = [0, 4, 8].map(|at| u32_at(record, at).cast_signed());
         let point = self.lattice.point(steps);
