@@ -219,6 +219,8 @@ fn a_signal_leaves_no_file_of_the_surface() {
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
+        // `wait` would close it, and at its end the program may be done before the signal is heard.
+        let points = child.stdin.take();
         let start = Instant::now();
         while !is_there(name) {
             assert!(
@@ -230,6 +232,7 @@ fn a_signal_leaves_no_file_of_the_surface() {
         let kill = ["-c", "kill -TERM \"$0\"", &child.id().to_string()];
         assert!(Command::new("sh").args(kill).status().unwrap().success());
         assert_eq!(child.wait().unwrap().signal(), Some(15));
+        drop(points);
         assert_left_nothing(&folder);
     }
 }
