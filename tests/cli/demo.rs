@@ -79,7 +79,7 @@ fn the_tasks_of_the_readme_run_on_what_the_demo_leaves() {
         .lines()
         .filter_map(|line| line.strip_prefix("    breakline "))
         .collect();
-    assert_eq!(commands.len(), 18, "{commands:?}");
+    assert_eq!(commands.len(), 19, "{commands:?}");
     for command in commands {
         let run = run_in(&folder, &command.split_whitespace().collect::<Vec<_>>());
         assert_eq!(run.code, 0, "{command}:\n{}", run.stderr);

@@ -176,6 +176,8 @@ const HABITS: &[Habit] = &[
 const VERBS: &[(&str, &str)] = &[
     ("lasmerge", "points"),
     ("las2las", "points"),
+    ("lasground", "ground"),
+    ("lasground_new", "ground"),
     ("las2tin", "tin"),
     ("las2dem", "dem"),
     ("blast2dem", "dem"),
@@ -201,17 +203,12 @@ const OF_OTHERS: &[(&str, &str)] = &[
     ),
     (
         "lasheight",
-        "`breakline dem IN -o OUT.tif` writes the ground that heights are above",
+        "`breakline sample GROUND --at IN --add height-above -o OUT.laz` writes heights above a surface",
     ),
     (
-        "lasground",
-        "points must be classified before: `pdal translate` with `filters.smrf` does it",
+        "lasclassify",
+        "`breakline ground IN -o OUT.laz` classifies the ground; buildings and plants are not told apart",
     ),
-    (
-        "lasground_new",
-        "points must be classified before: `pdal translate` with `filters.smrf` does it",
-    ),
-    ("lasclassify", "points must be classified before"),
     (
         "lasthin",
         "`breakline points IN --thin grid:1 --thin-keep lowest -o OUT.laz` keeps one point of each cell",
