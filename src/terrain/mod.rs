@@ -3,6 +3,7 @@
 //! | I have | I want | |
 //! |---|---|---|
 //! | points of many classes | the ground | [`Selection`] |
+//! | points without classes | the ground | [`ground::classify`] |
 //! | points | fewer of them | [`Thinner`], by a [`Thinning`] |
 //! | points and breaklines | a surface | [`TinBuilder`], which builds a [`Tin`] |
 //! | a TIN | the height at a position | [`Tin::elevation`] |
@@ -45,8 +46,7 @@
 //!
 //! # What it does not do
 //!
-//! Coordinates are not reprojected, ground is not separated from vegetation (classes are taken as
-//! given), and points are not smoothed.
+//! Coordinates are not reprojected, and points are not smoothed.
 
 mod admitted;
 mod arranged;
@@ -66,6 +66,7 @@ mod face_gradient;
 mod face_slopes;
 mod focal;
 mod grid_surface;
+pub mod ground;
 mod groups;
 mod in_order;
 mod inside;
