@@ -15,6 +15,7 @@ mod arrays;
 mod compare;
 mod errors;
 mod files;
+mod ground;
 mod names;
 mod notices;
 mod profile;
@@ -43,6 +44,8 @@ mod _breakline {
         check_space, class_numbers, crs, describe, info, is_of_space, main, read_points,
         triangulate, triangulate_space, write_points,
     };
+    #[pymodule_export]
+    use super::ground::{ground_classes, write_ground};
     #[pymodule_export]
     use super::names::settings;
     #[pymodule_export]

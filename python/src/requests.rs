@@ -17,6 +17,7 @@ use breakline::run::{
     QuantityOptions, ReplacedPoints, Smoothing, SystemOptions, TinRequest, WallOptions,
     WrittenEdges,
 };
+use breakline::terrain::ground::GroundOptions;
 use breakline::terrain::{
     CellPoint, Classes, CrossingRule, DuplicateRule, Gradient, HighSide, LabelTops, Method,
     Quantity, Ruggedness, Shading, Thinning,
@@ -509,6 +510,7 @@ pub(crate) struct SurfaceArguments<'py> {
     max_edge_inside: Option<f64>,
     classes: Option<Vec<u8>>,
     returns: Option<Vec<String>>,
+    ground: bool,
     duplicates: String,
     on_crossing: String,
     crossing_z: String,
@@ -560,6 +562,7 @@ impl SurfaceArguments<'_> {
             read: read.options()?,
             classes: Classes::of(self.classes.as_deref().unwrap_or_default(), &returns),
             returns,
+            ground: self.ground.then(GroundOptions::default),
             breaklines: layers(&self.breaklines)?,
             boundary: layers(&self.boundary)?,
             lines: self.lines()?,

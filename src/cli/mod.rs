@@ -136,6 +136,7 @@ fn dispatch(verb: &Verb, how: &ConsoleArgs, console: &Console) -> Result<Exit> {
     match verb {
         Verb::Info(args) => verbs::info::run(args, console),
         Verb::Points(args) => verbs::points::run(args, console),
+        Verb::Ground(args) => verbs::ground::run(args, console),
         Verb::Tin(_)
         | Verb::Simplify(_)
         | Verb::Dem(_)

@@ -68,6 +68,7 @@ settings! {
     FlatTolerance = "flat-tolerance",
     ForceDegrees = "force-degrees",
     Formula = "formula",
+    Ground = "ground",
     GroupBy = "group-by",
     Holes = "holes",
     InSpace = "in-space",

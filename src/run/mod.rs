@@ -129,6 +129,7 @@ pub use products::facts::{
     Facts, LayerFacts, MeshFacts, PlaneFacts, PointFacts, RasterFacts, crs_of_file, facts,
 };
 pub use products::frame::FrameOptions;
+pub use products::ground::{class_number, ground_classes};
 pub use products::map_options::{MapOptions, MapPreset, Smoothing};
 pub use products::overlaps::Overlap;
 pub use products::points::{
@@ -177,6 +178,7 @@ pub use triangulate::{
     Arithmetic, TriangulateOptions, TriangulateProduct, TriangulateReport, triangulate,
     triangulate_graph,
 };
+pub use verbs::ground::{GroundFile, GroundReport, GroundRequest, write_ground};
 pub use verbs::point_tiles::{PlanLength, PointTiles, write_point_tiles};
 #[cfg(feature = "cli")] // whether two names are one file
 pub(crate) use verbs::targets;

@@ -18,7 +18,7 @@ fn commands(page: &str) -> Vec<Vec<&str>> {
 }
 
 /// Runs the commands of a page; returns what all of them print.
-fn run_page(page: &str, folder: &TempDir) -> String {
+pub(super) fn run_page(page: &str, folder: &TempDir) -> String {
     let commands = commands(page);
     assert!(!commands.is_empty());
     let mut printed = String::new();

@@ -10,6 +10,7 @@ mod crossings;
 mod crs;
 mod demo;
 mod drape;
+mod ground;
 mod habits;
 mod inputs;
 mod jobs;

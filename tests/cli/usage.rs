@@ -10,6 +10,7 @@ fn help_goes_to_stdout_and_tells_each_verb_with_an_example() {
     for verb in [
         "info",
         "points",
+        "ground",
         "tin",
         "simplify",
         "triangulate",

@@ -41,6 +41,8 @@ const NOT_IN_TILES: &[(&str, &str)] = &[
     ("Transform", "needs PROJ, see the tests of reprojection"),
     ("FlatTriangles", "of surfaces of lines; tiles need points"),
     ("RidgesAdded", "tiles refuse --add-ridges"),
+    ("GroundFound", "tiles refuse --ground"),
+    ("OctreeLeftOut", "of `ground`"),
     ("Simplified", "of `tin`, in one piece only"),
     ("HeightsAboveEllipsoid", "of `terrain-tiles`"),
     ("BeyondBound", "of `terrain-tiles`"),

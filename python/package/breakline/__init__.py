@@ -10,6 +10,7 @@ what                function
 ==================  ==================================================
 points to columns   :func:`read_points`
 points to a file    :func:`points`
+the ground          :func:`ground`
 a surface           :func:`tin`, which returns a :class:`Tin`
 a lighter one       :func:`simplify`
 heights             :meth:`Tin.elevation`
@@ -55,6 +56,7 @@ from ._errors import (
     UnsupportedError,
     UsageError,
 )
+from ._ground import ground
 from ._layer import layer
 from ._points import points, read_points
 from ._profiles import Profile, drape, profile
@@ -130,6 +132,7 @@ __all__ = [
     "dem",
     "describe",
     "drape",
+    "ground",
     "hillshade",
     "info",
     "layer",

@@ -206,6 +206,14 @@ def read_points(
 def run(
     file: Optional[str], tables: Optional[str], overwrite: bool, memory: Optional[str], dry_run: bool, call: _Call
 ) -> str: ...
+def ground_classes(points: NDArray[np.float64], ground: dict[str, Any], call: _Call) -> NDArray[np.uint8]: ...
+def write_ground(
+    files: list[str],
+    chosen: tuple[Optional[list[int]], Optional[list[str]]],
+    ground: dict[str, Any],
+    output: tuple[str, bool],
+    call: _Call,
+) -> dict[str, Any]: ...
 def write_points(
     files: list[str],
     read: dict[str, Any],

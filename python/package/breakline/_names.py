@@ -35,5 +35,7 @@ Match = Literal["linear", "nearest", "exact"]
 Gradient = Literal["horn", "zevenbergen-thorne", "faces"]
 #: Smaller images of a raster in its file.
 Overviews = Literal["auto", "none"]
+#: Whether bridges are ground.
+Bridges = Literal["off", "ground"]
 #: How much a notice matters.
 Severity = Literal["detail", "note", "warning"]

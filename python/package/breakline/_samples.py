@@ -41,7 +41,8 @@ def sample(
         Positions in plan, in any order.
     add : str or sequence of str
         What is returned: ``"height"``, ``"slope"`` (degrees), ``"slope-percent"``, ``"aspect"`` (degrees clockwise from
-        north, nan where it is level) and ``"gradient"``.
+        north, nan where it is level) and ``"gradient"``. Positions have no heights: ``"height-above"`` is for the
+        program, which adds it to LAS and LAZ.
     prefix : str
         What the names begin with.
     method : str

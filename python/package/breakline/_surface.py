@@ -26,6 +26,7 @@ DEFAULTS: "dict[str, Any]" = {
     "max_edge_inside": None,
     "classes": None,
     "returns": None,
+    "ground": False,
     "to_crs": None,
     "require_grids": False,
     "epoch": None,
@@ -65,6 +66,7 @@ class Building(TypedDict, total=False):
     max_edge_inside: Optional[float]
     classes: Any
     returns: Any
+    ground: bool
     crs: Any
     to_crs: Any
     require_grids: bool
@@ -105,6 +107,7 @@ def surface_arguments(options: "dict[str, Any]") -> "dict[str, Any]":
         **{name: _inputs.name(options[name], name) for name in _NAMES},
         "classes": _inputs.classes(options["classes"]),
         "returns": _inputs.returns(options["returns"]),
+        "ground": bool(options["ground"]),
         "flat_buffer": _inputs.number(options["flat_buffer"], "flat_buffer"),
         "flat_points": bool(options["flat_points"]),
         "add_ridges": bool(options["add_ridges"]),

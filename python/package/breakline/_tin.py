@@ -526,6 +526,7 @@ def tin(
     max_edge_inside: Optional[float] = None,
     classes: Any = None,
     returns: Any = None,
+    ground: bool = False,
     crs: Any = None,
     to_crs: Any = None,
     require_grids: bool = False,
@@ -592,10 +593,13 @@ def tin(
         Longest edge anywhere: triangles with longer ones leave a hole.
     classes : int, str or list of these, optional
         Classes of points to use, also ranges (``"0-31"``) or ``"all"``. By default 2 (ground) if any point has it,
-        else all; with ``returns``, all but noise (7 and 18). Withheld points are never used.
+        else all; with ``returns`` or ``ground``, all but noise (7 and 18). Withheld points are never used.
     returns : str, int or list of these, optional
         Returns to use: ``"first"`` for surface models, ``"last"``, ``"single"``, numbers, or ranges such as ``"2-15"``;
         all by default. Points without returns are always used.
+    ground : bool
+        Use only points on the ground, which a filter finds among those of the classes and returns; by default of all
+        classes but noise. Not in tiles. :func:`ground` returns what it finds.
     crs : str, int or pyproj.CRS, optional
         Coordinate system to assign, whatever the input states.
     to_crs : str, int or pyproj.CRS, optional

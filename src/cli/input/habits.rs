@@ -557,6 +557,7 @@ fn with_output(verb: &str, mut words: Vec<OsString>) -> Result<(Vec<OsString>, V
 fn written(verb: &str) -> Vec<&'static str> {
     match verb {
         "points" => formats::extensions(Product::Points),
+        "ground" => vec!["las", "laz"],
         "tin" | "simplify" => formats::extensions(Product::Surface),
         "dem" | "slope" | "aspect" | "curvature" | "roughness" | "tri" | "tpi" => {
             formats::extensions(Product::Heights)

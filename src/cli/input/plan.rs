@@ -16,6 +16,7 @@ use crate::run::{
     TinRequest, WallOptions, is_of_lines,
 };
 use crate::terrain::Classes;
+use crate::terrain::ground::GroundOptions;
 
 /// The request for a surface, and what is written with all that is made of it.
 #[derive(Debug, Clone)]
@@ -188,7 +189,10 @@ pub(crate) fn systems(args: &SystemArgs) -> Result<SystemOptions> {
 }
 
 /// Parses the coordinate system of an option.
-fn system(option: &str, typed: Option<&str>) -> Result<Option<Crs>> {
+///
+/// # Errors
+/// If it is not known.
+pub(crate) fn system(option: &str, typed: Option<&str>) -> Result<Option<Crs>> {
     let Some(text) = typed else { return Ok(None) };
     Crs::from_user(text).map(Some).map_err(|e| {
         let error = Error::usage(format!("{option} {text}: {e}"));
@@ -251,6 +255,7 @@ fn tin_request(
         read: args.read.options(),
         classes: Classes::of(&ClassRange::all(&args.class), &returns),
         returns,
+        ground: args.ground.then(GroundOptions::default),
         bounds: args.bounds.map(|corners| corners.bounds()),
         max_edge: match args.max_edge {
             Some(EdgeLength::None) => EdgeLimit::Unlimited,
@@ -288,6 +293,7 @@ fn as_it_is(path: PathBuf, args: &SurfaceArgs) -> Result<PathBuf> {
         (lines.add_ridges, "--add-ridges"),
         (!args.class.is_empty(), "--class"),
         (!args.returns.is_empty(), "--return"),
+        (args.ground, "--ground"),
         (args.duplicates != DuplicatesArg::default(), "--duplicates"),
         (
             args.on_crossing != OnCrossingArg::default(),

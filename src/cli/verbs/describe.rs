@@ -206,6 +206,7 @@ mod tests {
             [
                 "info",
                 "points",
+                "ground",
                 "tin",
                 "simplify",
                 "triangulate",

@@ -10,6 +10,7 @@ mod dem;
 pub(super) mod demo;
 pub(super) mod describe;
 pub(super) mod drape;
+pub(super) mod ground;
 mod hillshade;
 pub(super) mod info;
 pub(super) mod job;

@@ -29,6 +29,9 @@ const BYTES_A_SMOOTHED_VERTEX: u64 = 100;
 /// Bytes per byte of a mesh file while it is read, including the triangles.
 const BYTES_A_MESH_BYTE: u64 = 3;
 
+/// Bytes per point while the ground is found, with the coordinates.
+const BYTES_A_FILTERED_POINT: u64 = 200;
+
 /// A need below this is not checked.
 const LITTLE: u64 = 64 << 20;
 
@@ -60,6 +63,16 @@ pub(crate) fn require_for_points(count: usize) -> Result<()> {
             ", which works in tiles: heights at points and along lines, volumes, rasters and contours are computed from part to part"
         ])
     })
+}
+
+/// Returns an error if there is not enough memory to find the ground among this many points.
+///
+/// # Errors
+/// Names the memory needed, the free memory, and what to do.
+pub(crate) fn require_for_ground(count: u64) -> Result<()> {
+    let what = format!("the ground among {count} points");
+    require(count.saturating_mul(BYTES_A_FILTERED_POINT), &what)
+        .map_err(|e| e.cure("find it in fewer files at once, or in a part of the area"))
 }
 
 /// Returns an error if there is not enough memory to double the columns of this many points, as a

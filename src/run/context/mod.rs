@@ -89,6 +89,8 @@ pub enum Stage {
     ReadingTriangles,
     /// Points and segments of the plane are read, counted in bytes.
     Reading,
+    /// The ground is searched among points.
+    FindingGround,
     /// Points and lines are triangulated.
     Triangulating,
     /// A surface is simplified.
@@ -131,6 +133,7 @@ impl Stage {
             Stage::ReadingCells => "reading cells",
             Stage::ReadingTriangles => "reading triangles",
             Stage::Reading => "reading",
+            Stage::FindingGround => "finding the ground",
             Stage::Triangulating => "triangulating",
             Stage::Simplifying => "simplifying",
             Stage::CheckingFaces => "checking faces",

@@ -108,6 +108,15 @@ pub enum Notice {
     NoiseUnused,
     /// Some returns are chosen, but so many points have none and are used, too.
     PointsWithoutReturnUsed(u64),
+    /// The ground was searched, and is used alone.
+    GroundFound {
+        /// Points that are ground.
+        ground: u64,
+        /// Points that were searched.
+        of: u64,
+    },
+    /// A file is written without the octree of its source.
+    OctreeLeftOut(PathBuf),
     /// There are no ground points: all classes are used.
     AllClassesUsed,
     /// A file states a coordinate system that differs from the assigned one.
@@ -554,6 +563,8 @@ impl Notice {
             | Notice::Triangulated(_)
             | Notice::Uncertain(..) => Severity::Detail,
             Notice::GroundUsed
+            | Notice::GroundFound { .. }
+            | Notice::OctreeLeftOut(_)
             | Notice::FirstOfBands(..)
             | Notice::PointsWithoutClassUsed(_)
             | Notice::NoiseUnused

@@ -142,6 +142,13 @@ fn text(notice: &Notice) -> Wording {
         Notice::NoiseUnused => "points of all classes are used, except noise (7 and 18)".into(),
         Notice::PointsWithoutReturnUsed(count) => points_without_return(*count).into(),
         Notice::GroundUsed => "points of class 2 (ground) are used".into(),
+        Notice::GroundFound { ground, of } => {
+            format!("{ground} of {of} points are on the ground, and are used").into()
+        }
+        Notice::OctreeLeftOut(path) => of_file(
+            path,
+            "LAZ in the order of the input; the octree of COPC is left out",
+        ),
         Notice::PointsWithoutClassUsed(count) => points_without_class(*count).into(),
         Notice::AllClassesUsed => all_classes_used(),
         Notice::Reassigned { path, stated, assigned } => reassigned(path, stated, assigned),

@@ -70,6 +70,25 @@ impl Units {
         }
     }
 
+    /// Returns the meters in a unit of x, of y and of the heights, each 1 if it is not known.
+    /// Angles have the lengths that they have at a latitude, which is not used otherwise.
+    pub(crate) fn metres_at(&self, latitude: f64) -> [f64; 3] {
+        /// At the poles, degrees of longitude have no length.
+        const MOST: f64 = 89.0;
+        let factor = |unit: &Option<Unit>| match unit {
+            Some(unit) if unit.factor > 0.0 => unit.factor,
+            _ => 1.0,
+        };
+        let (plan, height) = (factor(&self.plan), factor(&self.height));
+        if !self.is_angular {
+            return [plan, plan, height];
+        }
+        let most = MOST.to_radians();
+        let north = METRES_PER_DEGREE * plan.to_degrees();
+        let east = north * (latitude * plan).clamp(-most, most).cos();
+        [east, north, height]
+    }
+
     /// Returns the meters in a unit of the plan and in one of the heights; `None` if the units are
     /// not known, or angles.
     pub(crate) fn in_metres(&self) -> Option<[f64; 2]> {

@@ -13,6 +13,8 @@ use crate::terrain::Method;
 pub enum NotInTiles {
     /// Vertices are added on ridges and valleys.
     Ridges,
+    /// The ground is searched among all points.
+    Ground,
     /// Longest edges anywhere, where there is water.
     EdgesBesideWater,
     /// The crossings of lines are listed.
@@ -28,6 +30,7 @@ impl NotInTiles {
     pub(super) fn of(request: &TinRequest) -> Option<Self> {
         let known = [
             (NotInTiles::Ridges, request.lines.add_ridges),
+            (NotInTiles::Ground, request.ground.is_some()),
             (
                 NotInTiles::EdgesBesideWater,
                 request.max_edge_inside.is_some() && request.lines.has_water(),
@@ -47,6 +50,7 @@ impl NotInTiles {
     fn settings(self) -> Wording {
         match self {
             NotInTiles::Ridges => Setting::AddRidges.into(),
+            NotInTiles::Ground => Setting::Ground.into(),
             NotInTiles::EdgesBesideWater => {
                 wording![
                     Setting::MaxEdgeInside,

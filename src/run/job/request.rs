@@ -65,6 +65,7 @@ pub(super) fn options_of(
             },
         classes,
         returns,
+        ground,
         breaklines,
         boundary,
         lines,
@@ -83,6 +84,7 @@ pub(super) fn options_of(
     options.add(&[Setting::Partial], cut);
     options.add(&[Setting::Class], classes);
     options.add(&[Setting::Return], returns);
+    options.add(&[Setting::Ground], ground);
     options.add(&[Setting::Breaklines], breaklines);
     options.add(&[Setting::Boundary], boundary);
     options.add(&[Setting::Bounds], &bounds.map(in_plan::corners));

@@ -14,6 +14,7 @@ pub(crate) mod elevation;
 pub(crate) mod facts;
 mod followed;
 pub(crate) mod frame;
+pub(crate) mod ground;
 pub(crate) mod lattice;
 pub(crate) mod map_options;
 mod on_earth;

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use super::edge_limit::{EdgeLimit, mean_distance};
+use super::ground::keep_ground;
 use super::reach::{Reach, grown};
 use crate::crs::Crs;
 use crate::data::{Bounds, Columns, Layer, Return};
@@ -27,6 +28,7 @@ use crate::run::sources::open::{self, Content, content};
 use crate::run::sources::point_files::{FilesRead, LeftOutFiles, PointFiles};
 use crate::run::sources::systems::{self, SystemOptions, Systems};
 use crate::run::sources::transforms::{TargetSystem, Transforms};
+use crate::terrain::ground::GroundOptions;
 use crate::terrain::{
     Classes, CrossingRule, DuplicateRule, Method, ReadWindow, Selection, SelectionReport, Tin,
     TinBuilder, TinReport,
@@ -49,11 +51,16 @@ pub struct TinRequest {
     pub points: Vec<Input<MemoryPoints>>,
     /// Options of reading files of points.
     pub read: points::Options,
-    /// The classes to use. Points that are flagged as withheld are never used.
+    /// The classes to use; with [`ground`](Self::ground), the default is all but noise. Points that
+    /// are flagged as withheld are never used.
     pub classes: Classes,
     /// The returns to use; all if empty.
     #[serde(default)]
     pub returns: Vec<Return>,
+    /// Uses only those of these points that a filter finds to be ground; all if `None`. It sees all
+    /// of them, also with bounds. It is not stored: tiles have no filter.
+    #[serde(skip)]
+    pub ground: Option<GroundOptions>,
     /// Lines with heights that the surface must follow; of polygons, the rings are used. At the
     /// vertices of a breakline its heights are used, not those of points.
     pub breaklines: Vec<Input<Layer>>,
@@ -102,6 +109,15 @@ impl TinRequest {
         Input::each_file(&mut self.breaklines, visit);
         self.lines.each_file(visit);
         Input::each_file(&mut self.boundary, visit);
+    }
+
+    /// Returns the classes to use: the ground is searched among points of all classes but noise, if
+    /// none are chosen.
+    fn used_classes(&self) -> Classes {
+        match (&self.ground, &self.classes) {
+            (Some(_), Classes::GroundOrAll) => Classes::AllButNoise,
+            (_, classes) => classes.clone(),
+        }
     }
 
     /// Returns an error unless the bounds contain an area.
@@ -247,7 +263,7 @@ pub(crate) fn build(
         journal,
     )?;
 
-    let mut stated = files.stated(&request.classes, journal)?;
+    let mut stated = files.stated(&request.used_classes(), journal)?;
     stated.extend(layers.stated());
     let Systems { from, crs } = systems::reconcile_some(&stated, options, journal)?;
     let to = TargetSystem {
@@ -321,9 +337,12 @@ pub(crate) fn build(
 }
 
 /// Returns true if the surface depends on points that no triangle shows: where waters end, how high
-/// ridges are, and what a method makes of the vertices.
+/// ridges are, which points are ground, and what a method makes of the vertices.
 fn reaches_far(request: &TinRequest, method: Method) -> bool {
-    request.lines.has_water() || request.lines.add_ridges || method != Method::Linear
+    request.lines.has_water()
+        || request.lines.add_ridges
+        || request.ground.is_some()
+        || method != Method::Linear
 }
 
 /// Returns how far outside of bounds points are used at first.
@@ -429,7 +448,7 @@ impl Building<'_> {
     /// # Errors
     /// If a file cannot be read, or no input is left, even with a wider reach.
     fn read(&self, files: &mut PointFiles, reach: &Reach) -> Result<Read> {
-        let classes = &self.request.classes;
+        let classes = &self.request.used_classes();
         let mut selection = Selection::new(classes.clone(), reach.window())
             .with_returns(self.request.returns.clone());
         let files = files.read(self.by_file, self.transforms, &mut selection, self.journal)?;
@@ -443,6 +462,11 @@ impl Building<'_> {
         {
             return Err(nothing_left(&report, files.left_out.count, &self.paths));
         }
+        let points = match &self.request.ground {
+            Some(options) => keep_ground(points, self.units, options, self.journal)
+                .map_err(|error| self.in_file(error))?,
+            None => points,
+        };
         Ok(Read {
             points,
             report,

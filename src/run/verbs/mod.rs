@@ -5,6 +5,7 @@
 
 mod contour;
 mod dem;
+pub(crate) mod ground;
 mod hillshade;
 mod output_formats;
 pub(crate) mod point_tiles;

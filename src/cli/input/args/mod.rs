@@ -7,6 +7,7 @@ mod contour;
 mod crs;
 mod drape;
 mod driver;
+mod ground;
 mod job;
 mod lines;
 mod parse;
@@ -38,6 +39,7 @@ pub(crate) use contour::ContourArgs;
 pub(crate) use crs::CrsArgs;
 pub(crate) use drape::DrapeArgs;
 pub(crate) use driver::DriverArgs;
+pub(crate) use ground::GroundArgs;
 pub(crate) use job::{JobAction, JobArgs};
 pub(crate) use lines::LineArgs;
 pub(crate) use parse::{ClassRange, EdgeLength, ReturnRange, finite};
@@ -131,6 +133,7 @@ impl ConsoleArgs {
 pub(crate) enum Verb {
     Info(InfoArgs),
     Points(PointsArgs),
+    Ground(GroundArgs),
     Tin(TinArgs),
     Simplify(SimplifyArgs),
     Triangulate(TriangulateArgs),

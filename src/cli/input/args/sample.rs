@@ -95,6 +95,8 @@ pub(crate) enum FieldArg {
     Aspect,
     /// The rise per unit of x and of y: `gradient_x` and `gradient_y`
     Gradient,
+    /// How far the point is above the surface: `HeightAboveGround`; for LAS and LAZ
+    HeightAbove,
 }
 
 impl From<FieldArg> for SampledField {
@@ -105,6 +107,7 @@ impl From<FieldArg> for SampledField {
             FieldArg::SlopePercent => SampledField::SlopePercent,
             FieldArg::Aspect => SampledField::Aspect,
             FieldArg::Gradient => SampledField::Gradient,
+            FieldArg::HeightAbove => SampledField::Above,
         }
     }
 }

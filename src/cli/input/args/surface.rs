@@ -101,8 +101,8 @@ pub(crate) struct SurfaceArgs {
     /// Classes to use, such as `2,8` or `ground` [default: 2 if any point has it, else all]
     ///
     /// By number, by name as in LAS 1.4 (`ground,low-vegetation`), as a range (`0-31`), or `all`.
-    /// With --return, the default is all but noise (7 and 18). Points flagged as withheld are never
-    /// used; points from formats without classes are always used.
+    /// With --return or --ground, the default is all but noise (7 and 18). Points flagged as
+    /// withheld are never used; points from formats without classes are always used.
     #[arg(
         long,
         value_name = "CLASS,..",
@@ -124,6 +124,15 @@ pub(crate) struct SurfaceArgs {
         help_heading = "Surface"
     )]
     pub(crate) returns: Vec<ReturnRange>,
+
+    /// Use only points on the ground, which a filter finds
+    ///
+    /// For points without classes, or with bad ones. The filter sees the points of all classes but
+    /// noise (7 and 18), or those of --class and --return, also with --bounds. Bridges, buildings,
+    /// plants and vehicles are off the ground. All points are in memory, about 200 bytes for each.
+    /// `breakline ground` writes what is found to files.
+    #[arg(long, help_heading = "Surface")]
+    pub(crate) ground: bool,
 
     /// Which height is used where points have the same position
     ///

@@ -33,6 +33,7 @@
 //! | COPC: octree damaged, or not that of the chunks | error if nodes are chosen by it; with [`OnDamage::Accept`](crate::io::OnDamage) all points, and a warning |
 
 mod copc;
+mod copied;
 mod extra;
 mod head;
 mod header;
@@ -53,6 +54,7 @@ mod tests;
 mod write;
 
 pub use crate::io::options::las::{Detail, ReadOptions};
+pub use copied::copy_with_classes;
 pub use extra::{add_numbers, append_numbers};
 pub use header::{Header, RecordInfo};
 pub use merge::Rounding;

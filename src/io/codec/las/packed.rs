@@ -1,18 +1,31 @@
 //! What writers of compressed points share.
 
-use laz::LazItemRecordBuilder;
+use laz::{LazItem, LazItemRecordBuilder, LazVlr};
 
 use super::merge;
-use crate::data::LasHead;
 use crate::error::{Error, Kind, Result};
 
 /// Returns the items into which LASzip divides a record, for the point format and extra bytes.
 ///
 /// # Errors
 /// If it does not know the point format.
-pub(super) fn items(head: &LasHead) -> Result<Vec<laz::LazItem>> {
-    let extra = head.record_length - merge::usual_length(head.point_format);
-    LazItemRecordBuilder::default_for_point_format_id(head.point_format, extra).map_err(failed)
+pub(super) fn items(point_format: u8, record_length: u16) -> Result<Vec<LazItem>> {
+    let extra = record_length - merge::usual_length(point_format);
+    LazItemRecordBuilder::default_for_point_format_id(point_format, extra).map_err(failed)
+}
+
+/// Returns the record by which points are decompressed, with its header.
+///
+/// # Errors
+/// If it cannot be made.
+pub(super) fn laszip_record(items: &LazVlr) -> Result<Vec<u8>> {
+    let mut payload = Vec::new();
+    items.write_to(&mut payload)?;
+    let length = payload.len() as u16;
+    let (user, id) = (LazVlr::USER_ID, LazVlr::RECORD_ID);
+    let mut record = merge::record_header(user, id, length, LazVlr::DESCRIPTION);
+    record.extend(payload);
+    Ok(record)
 }
 
 /// Returns the error of a compressor.

@@ -6,6 +6,7 @@ use super::input::Input;
 use super::laz::Laz;
 use super::plain::Plain;
 use super::raw::MAX_HEADER;
+use super::records::Payloads;
 use super::{head, records, reference};
 use crate::data::{Bounds, Lattice, PartRead, PointBatch, PointInfo, PointSource};
 use crate::error::{Error, Result, Wording};
@@ -21,12 +22,54 @@ pub struct LasReader {
     warnings: Vec<Wording>,
 }
 
+/// The points of a file that are left to read.
 #[derive(Debug)]
-enum Points {
+pub(super) enum Points {
     Plain(Plain),
     Compressed(Box<Laz>),
     /// The last point was read, or an error occurred.
     Done,
+}
+
+impl Points {
+    /// Starts to read the points of a file.
+    ///
+    /// # Errors
+    /// If points are missing, and that is not accepted, or they cannot be decompressed.
+    pub(super) fn open(
+        input: Input,
+        header: &Header,
+        payloads: Payloads,
+        options: ReadOptions,
+        warnings: &mut Vec<Wording>,
+    ) -> Result<Self> {
+        if header.is_compressed {
+            let laz = Laz::new(input, header, payloads, options, warnings)?;
+            return Ok(Points::Compressed(Box::new(laz)));
+        }
+        Plain::new(input, header, options, warnings).map(Points::Plain)
+    }
+
+    /// Reads the next points; none at the end.
+    ///
+    /// # Errors
+    /// If they are damaged. No more are read then.
+    pub(super) fn read(
+        &mut self,
+        batch: &mut PointBatch,
+        warnings: &mut Vec<Wording>,
+    ) -> Result<()> {
+        batch.clear();
+        let result = match self {
+            Points::Plain(plain) => plain.read(batch, warnings),
+            Points::Compressed(laz) => laz.read(batch, warnings),
+            Points::Done => Ok(()),
+        };
+        if result.is_err() || batch.is_empty() {
+            *self = Points::Done;
+        }
+        result
+    }
 }
 
 impl LasReader {
@@ -46,13 +89,7 @@ impl LasReader {
             Detail::Columns => None,
             Detail::Records => Some(head::read(&mut input, &header)?),
         };
-        let points = match header.is_compressed {
-            false => Points::Plain(Plain::new(input, &header, options, &mut warnings)?),
-            true => {
-                let laz = Laz::new(input, &header, payloads, options, &mut warnings)?;
-                Points::Compressed(Box::new(laz))
-            }
-        };
+        let points = Points::open(input, &header, payloads, options, &mut warnings)?;
         let info = PointInfo {
             columns: None,
             format: header.format(),
@@ -89,16 +126,8 @@ impl PointSource for LasReader {
     }
 
     fn read(&mut self, batch: &mut PointBatch) -> Result<()> {
-        batch.clear();
-        let result = match &mut self.points {
-            Points::Plain(plain) => plain.read(batch, &mut self.warnings),
-            Points::Compressed(laz) => laz.read(batch, &mut self.warnings),
-            Points::Done => Ok(()),
-        };
-        if result.is_err() || batch.is_empty() {
-            self.points = Points::Done;
-        }
-        result.map_err(|error| error.in_file(&self.name))
+        let read = self.points.read(batch, &mut self.warnings);
+        read.map_err(|error| error.in_file(&self.name))
     }
 
     fn thin(&mut self, spacing: u64) -> bool {

@@ -8,8 +8,8 @@ use std::io::{Seek, SeekFrom, Write};
 use laz::{LazVlr, LazVlrBuilder, ParLasZipCompressor};
 
 use super::copc::{self, Gathered, Widening};
-use super::merge::{self, LatticeStep, Rounding, record_header};
-use super::packed::{failed, items};
+use super::merge::{self, LatticeStep, Rounding};
+use super::packed::{failed, items, laszip_record};
 use crate::data::{Bounds, LasHead, Lattice, PointBatch, PointInfo, PointSink, PointSummary};
 use crate::error::{Error, Result};
 use crate::io::bytes::contain::contain;
@@ -17,7 +17,7 @@ use crate::io::bytes::little_endian::u32_at;
 use crate::io::bytes::output::{Destination, Output};
 
 /// Bytes of records that are compressed together, per thread: about two chunks of typical points.
-const BATCH_BYTES: usize = 1 << 22;
+pub(super) const BATCH_BYTES: usize = 1 << 22;
 
 /// The compression of written points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -111,9 +111,9 @@ pub fn create<'a>(
     };
     let items = match packing {
         Packing::Plain => None,
-        Packing::Compressed => Some(LazVlr::from_laz_items(items(&head)?)),
+        Packing::Compressed => Some(LazVlr::from_laz_items(items(head.point_format, head.record_length)?)),
         Packing::Octree => Some(
-            LazVlrBuilder::new(items(&head)?)
+            LazVlrBuilder::new(items(head.point_format, head.record_length)?)
                 .with_variable_chunk_size()
                 .build(),
         ),
@@ -122,15 +122,7 @@ pub fn create<'a>(
     let mut records = head.records.concat();
     let mut record_count = head.records.len() as u32;
     if let Some(items) = &items {
-        let mut payload = Vec::new();
-        items.write_to(&mut payload)?;
-        records.extend(record_header(
-            LazVlr::USER_ID,
-            LazVlr::RECORD_ID,
-            payload.len() as u16,
-            LazVlr::DESCRIPTION,
-        ));
-        records.extend(payload);
+        records.extend(laszip_record(items)?);
         record_count += 1;
     }
     let points_start = u32::try_from(head.header.len() + records.len())

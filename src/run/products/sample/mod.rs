@@ -131,6 +131,7 @@ pub fn sample_positions(
     context: &Context,
 ) -> Result<Vec<f64>> {
     let journal = Journal::new(context);
+    options.require_no_heights()?;
     if let Some(notice) = surface.unread_by(options.method) {
         journal.add(notice);
     }
@@ -141,7 +142,7 @@ pub fn sample_positions(
         let work = journal.start(Stage::ComputingHeights, size)?;
         for some in positions.chunks(AT_ONCE) {
             for sample in sampling.samples(some)? {
-                sampling.each_value(&sample, |value| values.push(value));
+                sampling.each_value(&sample, f64::NAN, |value| values.push(value));
             }
             work.add(some.len() as u64)?;
         }

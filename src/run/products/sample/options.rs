@@ -4,6 +4,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use crate::crs::Crs;
+use crate::error::{Error, Result};
 use crate::io::Destination;
 use crate::io::points::Options;
 use crate::terrain::Method;
@@ -52,6 +53,9 @@ pub enum SampledField {
     Aspect,
     /// The rise per unit of x and of y, as `gradient_x` and `gradient_y`, in units of the data.
     Gradient,
+    /// How far the point is above the surface, as `HeightAboveGround`, which is PDAL's name;
+    /// negative below it. Only for points with heights, of LAS and LAZ.
+    Above,
 }
 
 impl SampledField {
@@ -62,6 +66,7 @@ impl SampledField {
         (SampledField::SlopePercent, "slope-percent"),
         (SampledField::Aspect, "aspect"),
         (SampledField::Gradient, "gradient"),
+        (SampledField::Above, "height-above"),
     ];
 
     /// Returns the names of the new columns.
@@ -72,19 +77,31 @@ impl SampledField {
             SampledField::SlopePercent => &["slope_pct"],
             SampledField::Aspect => &["aspect"],
             SampledField::Gradient => &["gradient_x", "gradient_y"],
+            SampledField::Above => &["HeightAboveGround"],
         }
     }
 
     /// Returns true if lengths and heights have to be in known proportion.
     pub(super) fn has_lengths(self) -> bool {
         match self {
-            SampledField::Height | SampledField::Gradient => false,
+            SampledField::Height | SampledField::Gradient | SampledField::Above => false,
             SampledField::Slope | SampledField::SlopePercent | SampledField::Aspect => true,
         }
     }
 }
 
 impl SampleOptions {
+    /// Returns an error if something is added that depends on the heights of the points.
+    pub(super) fn require_no_heights(&self) -> Result<()> {
+        match self.add.contains(&SampledField::Above) {
+            true => Err(Error::unsupported(
+                "heights above the surface are added to LAS and LAZ only",
+            )
+            .cure("save the points as one of these, or add the height of the surface")),
+            false => Ok(()),
+        }
+    }
+
     /// Returns the names of all new columns.
     pub fn column_names(&self) -> Vec<String> {
         let names = self.add.iter().flat_map(|field| field.columns());

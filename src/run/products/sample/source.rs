@@ -46,11 +46,14 @@ impl Source {
         names: &[String],
         journal: &Journal,
     ) -> Result<Self> {
+        if !is_read_once(path) && is_lidar(path) {
+            return Self::of_lidar(path, options, names, journal);
+        }
+        options
+            .require_no_heights()
+            .map_err(|error| error.in_file(path))?;
         if is_read_once(path) {
             return Self::of_text(path, options);
-        }
-        if is_lidar(path) {
-            return Self::of_lidar(path, options, names, journal);
         }
         if content(path) != Content::Layer {
             return Self::of_text(path, options);
@@ -168,7 +171,7 @@ impl Source {
                 target.put(out)
             }
             (Source::GeoJson { features, .. }, target) => {
-                let numbers = values.at(&features.positions())?;
+                let numbers = values.at(&features.positions(), &[])?;
                 values.require_any()?;
                 let text = features.with_numbers(names, &numbers);
                 match target {
@@ -185,7 +188,7 @@ impl Source {
                 },
                 SampleTarget::File(target),
             ) => {
-                let numbers = values.at(&positions)?;
+                let numbers = values.at(&positions, &[])?;
                 values.require_any()?;
                 shapefile::append_fields(&path, positions.len(), names, &numbers, target)
             }
@@ -250,7 +253,7 @@ fn write_text(
             return values.require_any();
         }
         let mut fields = Fields::new(table.has_decimal_commas());
-        let numbers = values.at(&batch.positions)?;
+        let numbers = values.at(&batch.positions, &[])?;
         numbers.into_iter().for_each(|number| fields.push(number));
         writer.write(&batch, &fields, out)?;
     }
@@ -277,7 +280,7 @@ fn write_lidar(
         }
         let positions = batch.x.iter().zip(&batch.y).map(|(&x, &y)| [x, y]);
         let positions: Vec<[f64; 2]> = positions.collect();
-        let numbers = values.at(&positions)?;
+        let numbers = values.at(&positions, &batch.z)?;
         las::append_numbers(&mut batch, &numbers, names.len());
         sink.write(&batch)?;
     }

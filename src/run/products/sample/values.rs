@@ -25,13 +25,16 @@ pub(super) struct Values<'a> {
 }
 
 impl Values<'_> {
-    /// Returns the values of some points, position by position.
-    pub(super) fn at(&mut self, positions: &[[f64; 2]]) -> Result<Vec<f64>> {
+    /// Returns the values of some points, position by position. `heights` are empty if the points
+    /// have none.
+    pub(super) fn at(&mut self, positions: &[[f64; 2]], heights: &[f64]) -> Result<Vec<f64>> {
         let samples = self.sampling.samples(positions)?;
         let mut values = Vec::new();
-        for sample in &samples {
+        for (i, sample) in samples.iter().enumerate() {
             self.outside += u64::from(!sample.is_some());
-            self.sampling.each_value(sample, |value| values.push(value));
+            let height = heights.get(i).copied().unwrap_or(f64::NAN);
+            self.sampling
+                .each_value(sample, height, |value| values.push(value));
         }
         self.points += samples.len() as u64;
         self.work.add(samples.len() as u64)?;
@@ -65,7 +68,8 @@ impl<'a> Sampling<'a> {
         journal: &Journal,
     ) -> Result<Self> {
         let add = &options.add;
-        let is_height = |field: &SampledField| *field == SampledField::Height;
+        let is_height =
+            |field: &SampledField| matches!(field, SampledField::Height | SampledField::Above);
         if options.method != Method::Linear && !add.iter().all(is_height) {
             return Err(Error::usage(
                 "slopes are those of the triangles, and heights of this method are not",
@@ -96,12 +100,14 @@ impl<'a> Sampling<'a> {
         self.sampler.samples(positions)
     }
 
-    /// Calls a function with each value that is added; NaN if it is missing.
-    pub(super) fn each_value(&self, sample: &Sample, mut each: impl FnMut(f64)) {
+    /// Calls a function with each value that is added to a point of this height; NaN if it is
+    /// missing.
+    pub(super) fn each_value(&self, sample: &Sample, height: f64, mut each: impl FnMut(f64)) {
         let slope_and_aspect = LazyCell::new(|| sample.slope_and_aspect(self.z_factor, 1.0));
         for field in self.add {
             match field {
                 SampledField::Height => each(sample.height),
+                SampledField::Above => each(height - sample.height),
                 SampledField::Slope => each(slope_and_aspect[0].atan().to_degrees()),
                 SampledField::SlopePercent => each(100.0 * slope_and_aspect[0]),
                 SampledField::Aspect => each(slope_and_aspect[1]),

@@ -37,7 +37,7 @@ const POINTS_PER_THREAD: u64 = 1 << 18;
 
 /// Limit for the points of a chunk that is decoded at once. LASzip writes 50 000; COPC some 100
 /// 000.
-const MAX_CHUNK_POINTS: u64 = 1 << 23;
+pub(super) const MAX_CHUNK_POINTS: u64 = 1 << 23;
 
 /// Limit for the points per byte. Real points take a byte or more each, points on a flat, regular
 /// grid a few tenths of a byte.
