@@ -3,7 +3,7 @@
 //! | I have | I want | |
 //! |---|---|---|
 //! | points of many classes | the ground | [`Selection`] |
-//! | points without classes | the ground | [`ground::classify`] |
+//! | points without classes | the ground | [`ground::classify`], [`ground::classify_in_tiles`] |
 //! | points | fewer of them | [`Thinner`], by a [`Thinning`] |
 //! | points and breaklines | a surface | [`TinBuilder`], which builds a [`Tin`] |
 //! | a TIN | the height at a position | [`Tin::elevation`] |
@@ -82,6 +82,7 @@ mod peel;
 mod point_rim;
 mod pyramid;
 mod rasterize;
+mod records;
 mod regions;
 mod ridges;
 mod rim_rule;

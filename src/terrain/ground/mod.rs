@@ -52,6 +52,7 @@ mod raster;
 pub(crate) mod recipe;
 mod spacing;
 mod surface;
+mod tiles;
 #[cfg(test)]
 mod tests;
 
@@ -59,6 +60,7 @@ use std::sync::atomic::AtomicBool;
 
 pub use self::options::{Bridges, GroundOptions, PointClass};
 pub use self::spacing::{GroundGrid, GroundGridFinder};
+pub use self::tiles::{Doubt, GroundTiles, Take, TiledClasses, classify_in_tiles};
 use super::cancel::go_on;
 use crate::error::{Error, Result};
 

@@ -30,8 +30,8 @@ pub(super) fn nearest(has: &[bool], width: usize) -> Option<Vec<u32>> {
             let at = row * width + column;
             let (above, below) = (rows[at], rows[at + width]);
             if below != u32::MAX
-                && (above == u32::MAX || below as usize - row < row - above as usize)
                 && below as usize > row
+                && (above == u32::MAX || below as usize - row < row - above as usize)
             {
                 rows[at] = below;
             }

@@ -1,7 +1,7 @@
 //! Heights next to each other, with a plane that they are near to: most blocks are known to be
 //! within a bound of a large triangle without a look at each height.
 
-use super::records::{Record, RecordFile};
+use crate::terrain::records::{Record, RecordFile};
 use crate::data::{Bounds, Tiling};
 use crate::error::Result;
 

@@ -7,7 +7,7 @@ use rustc_hash::FxHashMap;
 use super::blocks::{Block, blocks_of};
 use super::keys::keys_of;
 use super::lines::{Crossing, TileLines};
-use super::records::{Record, RecordFile, SortedRecords};
+use crate::terrain::records::{Record, RecordFile, SortedRecords};
 use super::rule::Level;
 use crate::data::{Bounds, TerrainTile, TilePosition, Tiling};
 use crate::error::{Error, Result};

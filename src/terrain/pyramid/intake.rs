@@ -9,7 +9,7 @@ use rustc_hash::FxHashMap;
 use super::keys::key_of;
 use super::lines::{Lines, OnLines, TileLines};
 use super::plan::{FinestTiles, ToEarth, to_earth};
-use super::records::{Record, RecordFile, SortedRecords, Sorter};
+use crate::terrain::records::{Record, RecordFile, SortedRecords, Sorter};
 use crate::data::{EdgeKind, Surface, Tiling, area_of, map_batches};
 use crate::error::{Error, Result};
 use crate::terrain::cancel::go_on;

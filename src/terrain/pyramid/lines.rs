@@ -2,7 +2,7 @@
 
 use rustc_hash::FxHashMap;
 
-use super::records::{Record, SortedRecords, Sorter};
+use crate::terrain::records::{Record, SortedRecords, Sorter};
 use crate::data::{TerrainTile, Tiling};
 use crate::error::Result;
 use crate::terrain::boxes::Extent;

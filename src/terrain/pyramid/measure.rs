@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use super::blocks::Block;
-use super::records::Record;
+use crate::terrain::records::Record;
 use super::tile::{Work, in_tile, inner, rounded};
 use crate::error::{Error, Result};
 use crate::terrain::cancel::go_on;

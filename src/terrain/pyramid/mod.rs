@@ -23,7 +23,6 @@ mod lines;
 mod measure;
 mod normals;
 mod plan;
-mod records;
 mod report;
 mod rule;
 #[cfg(test)]

@@ -1,5 +1,6 @@
 mod parts;
 mod scenes;
+mod tiles;
 
 use std::sync::atomic::AtomicBool;
 

@@ -102,7 +102,7 @@ impl<const N: usize> RecordFile<N> {
 fn in_folder(error: std::io::Error, folder: &Path) -> Error {
     Error::from(error)
         .in_file(folder)
-        .cure("make room there: the heights of the surface are in it while tiles are made")
+        .cure("make room there: it has what does not fit into memory")
 }
 
 /// Sorts records, in files if they are many.
