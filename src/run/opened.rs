@@ -102,7 +102,7 @@ fn in_files(
 }
 
 /// Returns the folder for large files that are needed for a while. `/tmp` may be in memory.
-fn folder_of_large_files() -> PathBuf {
+pub(crate) fn folder_of_large_files() -> PathBuf {
     let is_named = std::env::var_os("TMPDIR").is_some_and(|name| !name.is_empty());
     let on_disk = Path::new("/var/tmp");
     match !is_named && on_disk.is_dir() {

@@ -42,6 +42,7 @@ const NOT_IN_TILES: &[(&str, &str)] = &[
     ("FlatTriangles", "of surfaces of lines; tiles need points"),
     ("RidgesAdded", "tiles refuse --add-ridges"),
     ("GroundFound", "tiles refuse --ground"),
+    ("GroundInDoubt", "of `ground`"),
     ("OctreeLeftOut", "of `ground`"),
     ("Simplified", "of `tin`, in one piece only"),
     ("HeightsAboveEllipsoid", "of `terrain-tiles`"),

@@ -29,6 +29,7 @@ pub(crate) fn run(args: &GroundArgs, console: &Console) -> Result<Exit> {
             noise: args.noise,
             ..GroundOptions::default()
         },
+        memory: args.memory,
         crs: system("--a-srs", args.a_srs.as_deref())?,
     };
     let existing = Existing::of(args.overwrite);
@@ -62,11 +63,16 @@ fn lines_of(files: &[GroundFile]) -> Vec<String> {
         counted(points, "point"),
         counted(files.len() as u64, "file")
     );
-    let known: std::collections::BTreeSet<u8> = before.keys().chain(after.keys()).copied().collect();
+    let known: std::collections::BTreeSet<u8> =
+        before.keys().chain(after.keys()).copied().collect();
     let of_class = known.into_iter().map(|class| {
         let count = |of: &BTreeMap<u8, u64>| of.get(&class).copied().unwrap_or_default();
         let name = classes::name(class.into());
-        format!("class {class:<5} {} ({name}), before {}", count(&after), count(&before))
+        format!(
+            "class {class:<5} {} ({name}), before {}",
+            count(&after),
+            count(&before)
+        )
     });
     std::iter::once(first).chain(of_class).collect()
 }

@@ -75,6 +75,11 @@ pub(crate) fn require_for_ground(count: u64) -> Result<()> {
         .map_err(|e| e.cure("find it in fewer files at once, or in a part of the area"))
 }
 
+/// Returns how many points the ground can be found among in so many bytes.
+pub(crate) fn filtered_in(bytes: u64) -> usize {
+    usize::try_from(bytes / BYTES_A_FILTERED_POINT).unwrap_or(usize::MAX)
+}
+
 /// Returns an error if there is not enough memory to double the columns of this many points, as a
 /// list that grows may.
 ///

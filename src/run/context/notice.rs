@@ -115,6 +115,15 @@ pub enum Notice {
         /// Points that were searched.
         of: u64,
     },
+    /// Tiles whose ground depends on points that memory has no room for.
+    GroundInDoubt {
+        /// The number of them.
+        tiles: usize,
+        /// The number of all tiles.
+        of: usize,
+        /// The middle of the first one.
+        place: [f64; 2],
+    },
     /// A file is written without the octree of its source.
     OctreeLeftOut(PathBuf),
     /// There are no ground points: all classes are used.
@@ -636,6 +645,7 @@ impl Notice {
             | Notice::LinesApart(_)
             | Notice::ExtentApart
             | Notice::RegionAreasUnused(_)
+            | Notice::GroundInDoubt { .. }
             | Notice::SeedUnused { .. } => Severity::Warning,
         }
     }

@@ -14,7 +14,7 @@ use super::notice_systems::{
 };
 use super::units::{Quantity, bytes, neat, number};
 use crate::data::Bounds;
-use crate::error::{Command, Setting, Wording, wording};
+use crate::error::{Command, Plain, Setting, Wording, wording};
 use crate::run::request::lines::LineRole;
 
 /// Formats the text of the notice with plain names of settings, without its
@@ -145,6 +145,19 @@ fn text(notice: &Notice) -> Wording {
         Notice::GroundFound { ground, of } => {
             format!("{ground} of {of} points are on the ground, and are used").into()
         }
+        Notice::GroundInDoubt {
+            tiles,
+            of,
+            place: [x, y],
+        } => wording![
+            format!(
+                "the ground in {tiles} of {of} tiles, the first around {} {}, depends on points further away than memory has room for; ",
+                Plain(*x),
+                Plain(*y)
+            ),
+            Setting::Memory,
+            " gives it more"
+        ],
         Notice::OctreeLeftOut(path) => of_file(
             path,
             "LAZ in the order of the input; the octree of COPC is left out",

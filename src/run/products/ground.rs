@@ -1,6 +1,7 @@
 //! The ground among points, found by their positions alone.
 
 use std::borrow::Cow;
+use std::path::Path;
 
 use crate::crs::Crs;
 use crate::data::Bounds;
@@ -9,7 +10,9 @@ use crate::run::context::memory;
 use crate::run::context::notice::Notice;
 use crate::run::context::units::Units;
 use crate::run::context::{Context, Journal, Size, Stage};
-use crate::terrain::ground::{GroundOptions, PointClass, classify};
+use crate::terrain::ground::{
+    GroundOptions, GroundTiles, PointClass, Take, classify, classify_in_tiles,
+};
 
 /// The classes of LAS that points may get.
 pub(crate) const UNCLASSIFIED: u8 = 1;
@@ -87,23 +90,81 @@ fn of_units(
     Ok(classes)
 }
 
+/// Returns what each point is, like [`ground_classes`], in tiles that fit into so many bytes.
+/// `points` passes all of them on, in the same order each time.
+///
+/// # Errors
+/// Those of [`classify_in_tiles`].
+pub(crate) fn ground_in_tiles(
+    points: &dyn Fn(&mut Take) -> Result<()>,
+    crs: Option<&Crs>,
+    options: &GroundOptions,
+    memory: u64,
+    folder: &Path,
+    journal: &Journal,
+) -> Result<Vec<PointClass>> {
+    let units = Units::of(crs);
+    let mut bounds = Bounds::default();
+    if units.is_angular() {
+        points(&mut |batch| {
+            batch.iter().for_each(|&point| bounds.add(point));
+            Ok(())
+        })?;
+    }
+    let factors = factors(&units, &bounds);
+    let mut batch_in_metres = Vec::new();
+    let mut scale = |batch: &[[f64; 3]], take: &mut Take| {
+        batch_in_metres.clear();
+        batch_in_metres.extend(batch.iter().map(|point| scaled(point, factors)));
+        take(&batch_in_metres)
+    };
+    let scale = std::cell::RefCell::new(&mut scale);
+    let in_metres = |take: &mut Take| points(&mut |batch| (scale.borrow_mut())(batch, take));
+    let limits = GroundTiles {
+        at_once: memory::filtered_in(memory),
+        folder,
+    };
+    let work = journal.start(Stage::FindingGround, Size::Uncounted)?;
+    let cancel = journal.context.cancel;
+    let mut decided = |count| work.add(count as u64);
+    let found = classify_in_tiles(&in_metres, options, &limits, cancel, &mut decided)?;
+    work.end()?;
+    if let Some(doubt) = found.doubts.first() {
+        journal.add(Notice::GroundInDoubt {
+            tiles: found.doubts.len(),
+            of: found.tiles,
+            place: std::array::from_fn(|k| {
+                (0.5 * doubt.tile[0][k] + 0.5 * doubt.tile[1][k]) / factors[k]
+            }),
+        });
+    }
+    Ok(found.classes)
+}
+
 /// Returns points in meters; they are copied if they are in other units.
 fn in_metres<'a>(points: &'a [[f64; 3]], units: &Units) -> Cow<'a, [[f64; 3]]> {
-    let latitude = match units.is_angular() {
-        true => {
-            let Bounds { min, max } = Bounds::around(points);
-            0.5 * min[1] + 0.5 * max[1]
-        }
-        false => 0.0,
+    let bounds = match units.is_angular() {
+        true => Bounds::around(points),
+        false => Bounds::default(),
     };
-    let factors = units.metres_at(latitude);
+    let factors = factors(units, &bounds);
     if factors == [1.0; 3] {
         return Cow::Borrowed(points);
     }
-    let scaled = points
-        .iter()
-        .map(|point| std::array::from_fn(|k| point[k] * factors[k]));
-    Cow::Owned(scaled.collect())
+    Cow::Owned(points.iter().map(|point| scaled(point, factors)).collect())
+}
+
+/// Returns the length of each unit in meters; angles have the lengths in the middle of the bounds.
+fn factors(units: &Units, bounds: &Bounds) -> [f64; 3] {
+    let latitude = match units.is_angular() {
+        true => 0.5 * bounds.min[1] + 0.5 * bounds.max[1],
+        false => 0.0,
+    };
+    units.metres_at(latitude)
+}
+
+fn scaled(point: &[f64; 3], factors: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|k| point[k] * factors[k])
 }
 
 #[cfg(test)]

@@ -12,13 +12,14 @@ use crate::io::las::{self, Packing};
 use crate::run::context::memory;
 use crate::run::context::notice::Notice;
 use crate::run::context::{Context, Journal, Size, Stage, Work};
+use crate::run::opened::folder_of_large_files;
 use crate::run::products::ground::{
-    GROUND, HIGH_NOISE, LOW_NOISE, UNCLASSIFIED, class_number, ground_classes,
+    GROUND, HIGH_NOISE, LOW_NOISE, UNCLASSIFIED, class_number, ground_classes, ground_in_tiles,
 };
 use crate::run::request::input::is_read_once;
 use crate::run::sources::open::is_lidar;
 use crate::run::sources::systems::{self, Degrees, Stated, SystemOptions};
-use crate::terrain::ground::{GroundOptions, PointClass};
+use crate::terrain::ground::{GroundOptions, PointClass, Take};
 
 /// The point formats from this one on have a class for high noise.
 const FIRST_EXTENDED: u8 = 6;
@@ -41,6 +42,9 @@ pub struct GroundRequest {
     /// How the ground is found. If noise is asked for, it gets class 7 (low) or 18 (high), and in
     /// point formats 0 to 5, which have no 18, class 7.
     pub options: GroundOptions,
+    /// Bytes of memory for the points. What needs more is filtered in tiles. The default is half of
+    /// what is free.
+    pub memory: Option<u64>,
     /// The coordinate system of the points, whatever the files state: what is found depends on its
     /// units. It is not written.
     pub crs: Option<Crs>,
@@ -54,7 +58,9 @@ impl GroundRequest {
             false => &self.from_classes,
         };
         let mut from = [false; 256];
-        named.iter().for_each(|&class| from[usize::from(class)] = true);
+        named
+            .iter()
+            .for_each(|&class| from[usize::from(class)] = true);
         from
     }
 }
@@ -102,8 +108,10 @@ impl GroundFile {
 /// output says otherwise. Of COPC, the octree is left out. All files appear together, or none.
 ///
 /// # Complexity
-/// That of the filter, and the files are read twice. The points that the filter sees are in memory,
-/// those of all files together.
+/// That of the filter, and the files are read twice; three times if the points need more memory than
+/// they may use. They are sorted into files in `TMPDIR` (else in `/var/tmp`) then, of 80 bytes a
+/// point, and filtered in tiles, see [`classify_in_tiles`](crate::terrain::ground::classify_in_tiles).
+/// Besides, one byte a point is in memory.
 ///
 /// # Errors
 /// If a file is not LAS, LAZ or COPC, is damaged, or is the standard input or a pipe; if files are
@@ -123,7 +131,8 @@ pub fn write_ground(
         .map(|path| Source::open(path, &journal).map_err(|e| e.in_file(path)))
         .collect::<Result<Vec<_>>>()?;
     let count: u64 = files.iter().map(|file| file.count).sum();
-    memory::require_for_ground(count)?;
+    let memory = request.memory.unwrap_or_else(memory::half_of_free);
+    let is_in_tiles = count > memory::filtered_in(memory) as u64;
     let stated: Vec<Stated> = files.iter().map(|file| file.stated.clone()).collect();
     let options = SystemOptions {
         assign: request.crs.clone(),
@@ -144,13 +153,22 @@ pub fn write_ground(
     outputs.targets.iter().try_for_each(refuse_octree)?;
 
     let chosen = Chosen::of(request);
-    let points = chosen.read(&files, count, &journal)?;
-    let classes = ground_classes(&points, crs.as_ref(), &request.options, context);
-    let classes = classes.map_err(|error| match &request.files[..] {
-        [file] => error.in_file(file),
+    let classes = match is_in_tiles {
+        true => {
+            let pass = |take: &mut Take| chosen.pass(&files, count, &journal, take);
+            let folder = folder_of_large_files();
+            let (options, crs) = (&request.options, crs.as_ref());
+            ground_in_tiles(&pass, crs, options, memory, &folder, &journal)
+        }
+        false => {
+            let points = chosen.read(&files, count, &journal)?;
+            ground_classes(&points, crs.as_ref(), &request.options, context)
+        }
+    };
+    let classes = classes.map_err(|error| match (&request.files[..], error.path()) {
+        ([file], None) => error.in_file(file),
         _ => error,
     })?;
-    drop(points);
     let work = journal.start(Stage::WritingPoints, Size::Items(count))?;
     let mut found = classes.into_iter();
     let mut report = GroundReport {
@@ -267,10 +285,10 @@ struct Source {
 impl Source {
     fn open(path: &Path, journal: &Journal) -> Result<Self> {
         if is_read_once(path) {
-            return Err(Error::usage(
-                "points are read twice, and this can be read only once",
-            )
-            .cure("copy it to a file"));
+            return Err(
+                Error::usage("points are read twice, and this can be read only once")
+                    .cure("copy it to a file"),
+            );
         }
         if !is_lidar(path) {
             return Err(Error::unsupported(
@@ -303,7 +321,10 @@ impl Source {
         if has_extension(&plain, "copc") {
             return plain.with_extension("laz");
         }
-        match ["las", "laz"].iter().any(|known| has_extension(&name, known)) {
+        match ["las", "laz"]
+            .iter()
+            .any(|known| has_extension(&name, known))
+        {
             true => name,
             false => name.with_extension(if self.is_compressed { "laz" } else { "las" }),
         }
@@ -360,12 +381,21 @@ impl<'a> Chosen<'a> {
 
     /// Returns the points of all files that the filter sees.
     fn read(&self, files: &[Source], count: u64, journal: &Journal) -> Result<Vec<[f64; 3]>> {
-        let work = journal.start(Stage::ReadingPoints, Size::Items(count))?;
         let mut points = Vec::new();
         points
             .try_reserve_exact(count as usize)
             .map_err(|_| Error::limit(format!("not enough memory for {count} points")))?;
-        let mut batch = PointBatch::default();
+        self.pass(files, count, journal, &mut |batch| {
+            points.extend_from_slice(batch);
+            Ok(())
+        })?;
+        Ok(points)
+    }
+
+    /// Passes on the points of all files that the filter sees, in batches.
+    fn pass(&self, files: &[Source], count: u64, journal: &Journal, take: &mut Take) -> Result<()> {
+        let work = journal.start(Stage::ReadingPoints, Size::Items(count))?;
+        let (mut batch, mut seen) = (PointBatch::default(), Vec::new());
         for file in files {
             let mut source = las::open(&file.path)?;
             loop {
@@ -373,17 +403,16 @@ impl<'a> Chosen<'a> {
                 if batch.is_empty() {
                     break;
                 }
-                for i in 0..batch.len() {
-                    if let Fate::Filter = self.fate(&batch, i) {
-                        points.push([batch.x[i], batch.y[i], batch.z[i]]);
-                    }
-                }
+                let is_seen = |&i: &usize| matches!(self.fate(&batch, i), Fate::Filter);
+                let of_batch = (0..batch.len()).filter(is_seen);
+                seen.clear();
+                seen.extend(of_batch.map(|i| [batch.x[i], batch.y[i], batch.z[i]]));
+                take(&seen)?;
                 work.add(batch.len() as u64)?;
             }
             journal.add_warnings(&file.path, source.warnings());
         }
-        work.end()?;
-        Ok(points)
+        work.end()
     }
 
     /// Replaces the classes of a batch of points of a file by those that were found, and counts

@@ -52,9 +52,9 @@ mod raster;
 pub(crate) mod recipe;
 mod spacing;
 mod surface;
-mod tiles;
 #[cfg(test)]
 mod tests;
+mod tiles;
 
 use std::sync::atomic::AtomicBool;
 

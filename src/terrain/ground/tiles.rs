@@ -82,7 +82,9 @@ pub fn classify_in_tiles(
     let mut found = TiledClasses::default();
     let Some(grid) = grid else {
         points(&mut |batch| {
-            found.classes.resize(found.classes.len() + batch.len(), PointClass::Object);
+            found
+                .classes
+                .resize(found.classes.len() + batch.len(), PointClass::Object);
             Ok(())
         })?;
         return Ok(found);
@@ -312,7 +314,10 @@ impl Squares {
     fn extent(&self, tile: &Tile) -> [[f64; 2]; 2] {
         let at = |column: u32, row: u32| {
             let [x, y] = self.origin;
-            [x + f64::from(column) * self.side, y + f64::from(row) * self.side]
+            [
+                x + f64::from(column) * self.side,
+                y + f64::from(row) * self.side,
+            ]
         };
         [
             at(tile.columns.start, tile.rows.start),
@@ -341,7 +346,9 @@ impl Squares {
                 }));
             }
             let own = self.filter(tile, around, options, cancel)?.own;
-            let differ = own.iter().filter(|&&(index, class)| classes[index] != class);
+            let differ = own
+                .iter()
+                .filter(|&&(index, class)| classes[index] != class);
             let count = differ.count();
             for (index, class) in own {
                 classes[index] = class;

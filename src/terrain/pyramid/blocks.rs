@@ -1,9 +1,9 @@
 //! Heights next to each other, with a plane that they are near to: most blocks are known to be
 //! within a bound of a large triangle without a look at each height.
 
-use crate::terrain::records::{Record, RecordFile};
 use crate::data::{Bounds, Tiling};
 use crate::error::Result;
+use crate::terrain::records::{Record, RecordFile};
 
 /// The largest number of heights of a block.
 const BLOCK: usize = 1 << 10;

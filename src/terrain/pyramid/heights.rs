@@ -7,10 +7,10 @@ use rustc_hash::FxHashMap;
 use super::blocks::{Block, blocks_of};
 use super::keys::keys_of;
 use super::lines::{Crossing, TileLines};
-use crate::terrain::records::{Record, RecordFile, SortedRecords};
 use super::rule::Level;
 use crate::data::{Bounds, TerrainTile, TilePosition, Tiling};
 use crate::error::{Error, Result};
+use crate::terrain::records::{Record, RecordFile, SortedRecords};
 
 /// The finest step of heights, in meters.
 const LEAST_STEP: f64 = 1.0 / 65_536.0;

@@ -9,11 +9,11 @@ use rustc_hash::FxHashMap;
 use super::keys::key_of;
 use super::lines::{Lines, OnLines, TileLines};
 use super::plan::{FinestTiles, ToEarth, to_earth};
-use crate::terrain::records::{Record, RecordFile, SortedRecords, Sorter};
 use crate::data::{EdgeKind, Surface, Tiling, area_of, map_batches};
 use crate::error::{Error, Result};
 use crate::terrain::cancel::go_on;
 use crate::terrain::in_order::by_coordinates;
+use crate::terrain::records::{Record, RecordFile, SortedRecords, Sorter};
 
 /// Calls a function with each part of a surface, one after the other. A surface in one piece is its
 /// only part.

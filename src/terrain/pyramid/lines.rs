@@ -2,12 +2,12 @@
 
 use rustc_hash::FxHashMap;
 
-use crate::terrain::records::{Record, SortedRecords, Sorter};
 use crate::data::{TerrainTile, Tiling};
 use crate::error::Result;
 use crate::terrain::boxes::Extent;
 use crate::terrain::in_order::by_coordinates;
 use crate::terrain::linear::{gradient, plan, turn};
+use crate::terrain::records::{Record, SortedRecords, Sorter};
 use crate::triangulation::num::Sign;
 
 /// A height at a position along a line.

@@ -6,10 +6,10 @@ use rayon::prelude::*;
 use rustc_hash::FxHashMap;
 
 use super::blocks::Block;
-use crate::terrain::records::Record;
 use super::tile::{Work, in_tile, inner, rounded};
 use crate::error::{Error, Result};
 use crate::terrain::cancel::go_on;
+use crate::terrain::records::Record;
 use crate::triangulation::tds::{CellId, ccw, cw};
 use crate::triangulation::{Location, Passage};
 

@@ -3,6 +3,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::parse::{ClassRange, ReturnRange};
+use crate::run::memory_of;
 use crate::terrain::ground::Bridges;
 
 /// Classify the ground of lidar points, and keep every other byte of their files
@@ -15,8 +16,8 @@ use crate::terrain::ground::Bridges;
 /// becomes LAZ: its octree is left out.
 ///
 /// Several files are one area: their points are filtered together, and each file is written for
-/// itself. All of them have to fit into memory, about 200 bytes for each point. Lengths are meters,
-/// whatever the unit of the data; without a coordinate system, a unit is taken for a meter.
+/// itself. What needs more memory than --memory is filtered in tiles that overlap. Lengths are
+/// meters, whatever the unit of the data; without a coordinate system, a unit is taken for a meter.
 #[derive(Debug, Clone, Args)]
 #[command(after_long_help = "\
 Example:
@@ -75,6 +76,14 @@ pub(crate) struct GroundArgs {
     /// In point formats 0 to 5, which have no class 18, both get class 7.
     #[arg(long, help_heading = "Ground")]
     pub(crate) noise: bool,
+
+    /// Memory for the points, such as `2GB` [default: half of what is free]
+    ///
+    /// About 200 bytes for each point, in tiles for each of a tile. Tiles agree with the whole; where
+    /// two of them do not, they are filtered again with more around them. Files in TMPDIR (else in
+    /// /var/tmp) take 80 bytes for each point, and one byte stays in memory.
+    #[arg(long, value_name = "SIZE", value_parser = memory_of, help_heading = "Ground")]
+    pub(crate) memory: Option<u64>,
 
     /// Coordinate system of the points, whatever the files state
     ///

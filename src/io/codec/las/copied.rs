@@ -128,7 +128,9 @@ impl Source {
         let mut header = Header::check(&bytes, input.length, &mut warnings)?;
         let payloads = records::read(&input, &mut header, &mut warnings)?;
         let laszip = payloads.laszip.as_deref();
-        let laszip = laszip.filter(|_| header.is_compressed).map(LazVlr::from_buffer);
+        let laszip = laszip
+            .filter(|_| header.is_compressed)
+            .map(LazVlr::from_buffer);
         let laszip = laszip.and_then(std::result::Result::ok);
         let options = ReadOptions {
             cut: OnDamage::Refuse,
@@ -187,7 +189,10 @@ impl Source {
     fn around(&mut self, is_compressed: bool) -> Result<Around> {
         let layout = self.header.layout;
         let mut header = self.input.bytes(0, layout.vlr_start as usize)?;
-        let kept = self.laszip.take().filter(|laszip| self.can_compress(laszip));
+        let kept = self
+            .laszip
+            .take()
+            .filter(|laszip| self.can_compress(laszip));
         let (laszip, own) = match (is_compressed, kept) {
             (false, _) => (None, None),
             (true, Some(laszip)) => (Some(laszip), None),
@@ -233,8 +238,7 @@ impl Source {
         /// All points in one stream.
         const WHOLE: u16 = 1;
         let size = u64::from(laszip.chunk_size());
-        let is_small =
-            size <= MAX_CHUNK_POINTS && size * self.stride() as u64 <= MOST_CHUNK_BYTES;
+        let is_small = size <= MAX_CHUNK_POINTS && size * self.stride() as u64 <= MOST_CHUNK_BYTES;
         let mut payload = Vec::new();
         let is_written = laszip.write_to(&mut payload).is_ok();
         is_written

@@ -35,7 +35,11 @@ pub(super) fn records(input: &mut Input, header: &Header) -> Result<Vec<Span>> {
 pub(super) fn late_records(input: &mut Input, header: &Header) -> Result<Vec<Span>> {
     match header.layout {
         FileLayout { evlr_count: 0, .. } => Ok(Vec::new()),
-        FileLayout { evlr_start, evlr_count, .. } => {
+        FileLayout {
+            evlr_start,
+            evlr_count,
+            ..
+        } => {
             let end = input.length;
             spans(input, evlr_start..end, evlr_count, true)
         }

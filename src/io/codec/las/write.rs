@@ -111,7 +111,10 @@ pub fn create<'a>(
     };
     let items = match packing {
         Packing::Plain => None,
-        Packing::Compressed => Some(LazVlr::from_laz_items(items(head.point_format, head.record_length)?)),
+        Packing::Compressed => Some(LazVlr::from_laz_items(items(
+            head.point_format,
+            head.record_length,
+        )?)),
         Packing::Octree => Some(
             LazVlrBuilder::new(items(head.point_format, head.record_length)?)
                 .with_variable_chunk_size()

@@ -14,8 +14,16 @@ fn town(side: f64) -> Vec<[f64; 3]> {
         let [x, y] = [numbers.unit() * side, numbers.unit() * side];
         let hill = 8.0 * (x / 60.0).sin() * (y / 45.0).cos() + 0.05 * numbers.unit();
         let is_box = x % 40.0 < 14.0 && y % 37.0 < 11.0;
-        let tree = if numbers.below(20) == 0 { 6.0 * numbers.unit() } else { 0.0 };
-        [x + 500_000.0, y + 4_000_000.0, hill + if is_box { 7.0 } else { tree }]
+        let tree = if numbers.below(20) == 0 {
+            6.0 * numbers.unit()
+        } else {
+            0.0
+        };
+        [
+            x + 500_000.0,
+            y + 4_000_000.0,
+            hill + if is_box { 7.0 } else { tree },
+        ]
     };
     (0..count).map(point).collect()
 }
@@ -38,7 +46,9 @@ fn in_tiles(points: &[[f64; 3]], at_once: usize) -> super::super::TiledClasses {
         Ok(())
     });
     let found = found.unwrap();
-    let finite = points.iter().filter(|point| point.iter().all(|value| value.is_finite()));
+    let finite = points
+        .iter()
+        .filter(|point| point.iter().all(|value| value.is_finite()));
     assert_eq!(decided, finite.count());
     found
 }
@@ -52,7 +62,13 @@ fn tiles_find_the_ground_of_the_whole() {
         ..GroundOptions::default()
     };
     let whole = classes(&points, &options);
-    assert!(whole.iter().filter(|&&class| class == PointClass::Ground).count() > 60_000);
+    assert!(
+        whole
+            .iter()
+            .filter(|&&class| class == PointClass::Ground)
+            .count()
+            > 60_000
+    );
     for at_once in [1 << 30, 60_000] {
         let tiled = in_tiles(&points, at_once);
         assert_eq!(tiled.tiles > 1, at_once < points.len(), "{}", tiled.tiles);
