@@ -350,3 +350,37 @@ fn the_page_on_raw_tiles_runs() {
         assert!(files.iter().any(|file| file == name), "{name}");
     }
 }
+
+#[test]
+fn files_that_do_not_fit_into_memory_get_the_classes_of_the_whole() {
+    // Hills with houses, in two files that share a border. 16 MB have room for half of the points.
+    let of_columns = |columns: std::ops::Range<u32>| {
+        let places = columns.flat_map(|i| (0..400).map(move |j| (i, j)));
+        let point = |(i, j): (u32, u32)| {
+            let hill = 10.0 * (f64::from(i) / 70.0).sin() * (f64::from(j) / 50.0).cos();
+            let is_house = i % 41 < 12 && j % 37 < 9;
+            let height = hill + if is_house { 6.0 } else { 0.0 };
+            ([f64::from(i), f64::from(j), height], 0)
+        };
+        las(&places.map(point).collect::<Vec<_>>(), None)
+    };
+    let folder = folder_of(&[
+        ("west.las", of_columns(0..200)),
+        ("east.las", of_columns(200..400)),
+    ]);
+    let ground = ["ground", "west.las", "east.las"];
+    let whole = run_in(&folder, &[&ground[..], &["-o", "whole"]].concat());
+    whole.works(&[]);
+    let few = ["-o", "tiled", "--memory", "16MB"];
+    let tiled = run_in(&folder, &[&ground[..], &few].concat());
+    tiled.works(&[]);
+    for name in ["west.las", "east.las"] {
+        let of = |of: &str| bytes(&folder, &format!("{of}/{name}"));
+        assert_eq!(classes(&of("whole")), classes(&of("tiled")), "{name}");
+        let ground = classes(&of("whole"))
+            .iter()
+            .filter(|&&class| class == 2)
+            .count();
+        assert!((60_000..79_000).contains(&ground), "{ground}");
+    }
+}
