@@ -1,7 +1,6 @@
 //! Surfaces that verbs ask: in memory, or in files if they would not fit.
 
-use std::path::{Path, PathBuf};
-
+use super::context::large_files::folder_of_large_files;
 use super::context::memory;
 use super::context::notice::Notice;
 use super::context::{Context, Journal};
@@ -99,14 +98,4 @@ fn in_files(
         built: None,
         notices,
     })
-}
-
-/// Returns the folder for large files that are needed for a while. `/tmp` may be in memory.
-pub(crate) fn folder_of_large_files() -> PathBuf {
-    let is_named = std::env::var_os("TMPDIR").is_some_and(|name| !name.is_empty());
-    let on_disk = Path::new("/var/tmp");
-    match !is_named && on_disk.is_dir() {
-        true => on_disk.to_path_buf(),
-        false => std::env::temp_dir(),
-    }
 }

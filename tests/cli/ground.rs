@@ -355,14 +355,14 @@ fn the_page_on_raw_tiles_runs() {
 fn files_that_do_not_fit_into_memory_get_the_classes_of_the_whole() {
     // Hills with houses, in two files that share a border. 16 MB have room for half of the points.
     let of_columns = |columns: std::ops::Range<u32>| {
-        let places = columns.flat_map(|i| (0..400).map(move |j| (i, j)));
+        let cells = columns.flat_map(|i| (0..400).map(move |j| (i, j)));
         let point = |(i, j): (u32, u32)| {
             let hill = 10.0 * (f64::from(i) / 70.0).sin() * (f64::from(j) / 50.0).cos();
             let is_house = i % 41 < 12 && j % 37 < 9;
             let height = hill + if is_house { 6.0 } else { 0.0 };
             ([f64::from(i), f64::from(j), height], 0)
         };
-        las(&places.map(point).collect::<Vec<_>>(), None)
+        las(&cells.map(point).collect::<Vec<_>>(), None)
     };
     let folder = folder_of(&[
         ("west.las", of_columns(0..200)),

@@ -1,6 +1,7 @@
 //! The context of a run: the monitor of its progress and notices, and the flag that cancels it.
 
 pub(crate) mod event;
+pub(crate) mod large_files;
 pub(crate) mod memory;
 pub(crate) mod notice;
 mod notice_lists;

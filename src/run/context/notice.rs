@@ -122,7 +122,7 @@ pub enum Notice {
         /// The number of all tiles.
         of: usize,
         /// The middle of the first one.
-        place: [f64; 2],
+        middle: [f64; 2],
     },
     /// A file is written without the octree of its source.
     OctreeLeftOut(PathBuf),

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::notice::PartlyCounted;
 use super::units::number;
-use crate::error::Wording;
+use crate::error::{Plain, Setting, Wording, wording};
 
 /// Returns a text about a file.
 pub(super) fn of_file(path: &Path, text: &str) -> Wording {
@@ -96,4 +96,17 @@ fn first_of(things: &[impl ToString]) -> String {
 pub(super) fn named(noun: &str, numbers: &[impl ToString]) -> String {
     let s = if numbers.len() == 1 { "" } else { "s" };
     format!("{noun}{s} {}", first_of(numbers))
+}
+
+/// Tiles of which the first has this middle.
+pub(super) fn ground_in_doubt(tiles: usize, of: usize, [x, y]: [f64; 2]) -> Wording {
+    wording![
+        format!(
+            "the ground in {tiles} of {of} tiles, the first around {} {}, depends on points further away than memory has room for; ",
+            Plain(x),
+            Plain(y)
+        ),
+        Setting::Memory,
+        " gives it more"
+    ]
 }

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use super::notice::{CrossingNote, LoweredRiver, Notice, Seed, SeedFlaw, WaterStep};
 use super::notice_lists::{
-    named, of_file, of_listed, polygons_outside, polygons_partly_outside, rings_overlap,
-    sections_cross,
+    ground_in_doubt, named, of_file, of_listed, polygons_outside, polygons_partly_outside,
+    rings_overlap, sections_cross,
 };
 use super::notice_systems::{
     above_ellipsoid, beyond_bound, different_units, first_of_bands, heights_of_others, no_system,
@@ -14,7 +14,7 @@ use super::notice_systems::{
 };
 use super::units::{Quantity, bytes, neat, number};
 use crate::data::Bounds;
-use crate::error::{Command, Plain, Setting, Wording, wording};
+use crate::error::{Command, Setting, Wording, wording};
 use crate::run::request::lines::LineRole;
 
 /// Formats the text of the notice with plain names of settings, without its
@@ -145,19 +145,7 @@ fn text(notice: &Notice) -> Wording {
         Notice::GroundFound { ground, of } => {
             format!("{ground} of {of} points are on the ground, and are used").into()
         }
-        Notice::GroundInDoubt {
-            tiles,
-            of,
-            place: [x, y],
-        } => wording![
-            format!(
-                "the ground in {tiles} of {of} tiles, the first around {} {}, depends on points further away than memory has room for; ",
-                Plain(*x),
-                Plain(*y)
-            ),
-            Setting::Memory,
-            " gives it more"
-        ],
+        Notice::GroundInDoubt { tiles, of, middle } => ground_in_doubt(*tiles, *of, *middle),
         Notice::OctreeLeftOut(path) => of_file(
             path,
             "LAZ in the order of the input; the octree of COPC is left out",

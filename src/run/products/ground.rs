@@ -133,7 +133,7 @@ pub(crate) fn ground_in_tiles(
         journal.add(Notice::GroundInDoubt {
             tiles: found.doubts.len(),
             of: found.tiles,
-            place: std::array::from_fn(|k| {
+            middle: std::array::from_fn(|k| {
                 (0.5 * doubt.tile[0][k] + 0.5 * doubt.tile[1][k]) / factors[k]
             }),
         });

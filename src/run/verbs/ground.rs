@@ -9,10 +9,10 @@ use crate::crs::Crs;
 use crate::data::{PointBatch, PointInfo, PointSource, Return};
 use crate::error::{Command, Error, Result, wording};
 use crate::io::las::{self, Packing};
+use crate::run::context::large_files::folder_of_large_files;
 use crate::run::context::memory;
 use crate::run::context::notice::Notice;
 use crate::run::context::{Context, Journal, Size, Stage, Work};
-use crate::run::opened::folder_of_large_files;
 use crate::run::products::ground::{
     GROUND, HIGH_NOISE, LOW_NOISE, UNCLASSIFIED, class_number, ground_classes, ground_in_tiles,
 };
@@ -108,10 +108,11 @@ impl GroundFile {
 /// output says otherwise. Of COPC, the octree is left out. All files appear together, or none.
 ///
 /// # Complexity
-/// That of the filter, and the files are read twice; three times if the points need more memory than
-/// they may use. They are sorted into files in `TMPDIR` (else in `/var/tmp`) then, of 80 bytes a
-/// point, and filtered in tiles, see [`classify_in_tiles`](crate::terrain::ground::classify_in_tiles).
-/// Besides, one byte a point is in memory.
+/// That of the filter, and the files are read twice; three times if the points need more memory
+/// than they may use. They are sorted into files in `TMPDIR` (else in `/var/tmp`) then, of 80 bytes
+/// a point, and filtered in tiles, see
+/// [`classify_in_tiles`](crate::terrain::ground::classify_in_tiles). One byte a point stays in
+/// memory.
 ///
 /// # Errors
 /// If a file is not LAS, LAZ or COPC, is damaged, or is the standard input or a pipe; if files are

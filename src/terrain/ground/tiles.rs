@@ -50,7 +50,7 @@ pub struct Doubt {
 /// Returns the class of each point like [`classify`], for points that do not fit into memory.
 ///
 /// `points` passes all of them on, in batches, whenever it is called: twice, in the same order.
-/// `decided` is told of each tile how many points it has.
+/// `decided` gets the number of points of each tile.
 ///
 /// Tiles are squares, or several of them. Each is filtered with the points around it, as far as
 /// [`GroundGrid::reach`] says, on the grid of the whole. A minimum cut is not local, so neighbors
@@ -114,7 +114,7 @@ pub fn classify_in_tiles(
         }
     }
     for tile in disputed.into_iter().map(|number| &tiles[number]) {
-        let doubt = squares.settle(tile, &options, limits, cancel, &mut found.classes)?;
+        let doubt = squares.agree(tile, &options, limits, cancel, &mut found.classes)?;
         found.doubts.extend(doubt);
     }
     Ok(found)
@@ -276,14 +276,14 @@ impl Squares {
         let mut rows: Vec<u32> = self.within(&grown).map(|(&(row, _), _)| row).collect();
         rows.dedup();
         let mut points = Vec::new();
-        let mut places = Vec::new();
+        let mut numbers = Vec::new();
         for row in rows {
             let key = |column: u32| u64::from(row) << 32 | u64::from(column);
             let first = (key(grown.columns.start), f64::NEG_INFINITY);
             let end = (key(grown.columns.end - 1), f64::INFINITY);
             for (key, [x, y, z, index]) in self.records.between(first, end)? {
                 points.push([x, y, z]);
-                places.push((index as usize, [key as u32, row]));
+                numbers.push((index as usize, [key as u32, row]));
             }
         }
         let classes = classify(&points, options, cancel)?;
@@ -296,7 +296,7 @@ impl Squares {
         let is_near = |point: &[f64; 3]| {
             (0..2).all(|k| point[k] >= low[k] - strip && point[k] < high[k] + strip)
         };
-        for ((point, (index, square)), class) in points.iter().zip(places).zip(classes) {
+        for ((point, (index, square)), class) in points.iter().zip(numbers).zip(classes) {
             if tile.contains(square) {
                 filtered.own.push((index, class));
             } else if is_near(point) {
@@ -326,7 +326,7 @@ impl Squares {
     }
 
     /// Filters a tile again with ever more around it, until its classes stay.
-    fn settle(
+    fn agree(
         &self,
         tile: &Tile,
         options: &GroundOptions,
