@@ -62,18 +62,19 @@ pub(crate) fn write_ground<'py>(
     files: Vec<PathBuf>,
     chosen: (Option<Vec<u8>>, Option<Vec<String>>),
     ground: GroundArguments,
-    output: (PathBuf, bool),
+    output: (PathBuf, bool, Option<String>),
     call: Call,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (from_classes, returns) = chosen;
+    let (output, overwrite, memory) = output;
     let request = GroundRequest {
         files,
         from_classes: from_classes.unwrap_or_default(),
         returns: requests::returns_of(returns.as_deref())?,
         options: ground.options()?,
+        memory: memory.as_deref().map(requests::memory).transpose()?,
         crs: requests::crs(ground.crs.as_deref())?,
     };
-    let (output, overwrite) = output;
     let report = work::run(py, &call, |context| -> Result<_> {
         let existing = Existing::of(overwrite);
         Ok(run::write_ground(&request, &output, existing, context)?)

@@ -211,7 +211,7 @@ def write_ground(
     files: list[str],
     chosen: tuple[Optional[list[int]], Optional[list[str]]],
     ground: dict[str, Any],
-    output: tuple[str, bool],
+    output: tuple[str, bool, Optional[str]],
     call: _Call,
 ) -> dict[str, Any]: ...
 def write_points(

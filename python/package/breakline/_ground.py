@@ -22,6 +22,7 @@ def ground(
     noise: bool = False,
     crs: Any = None,
     overwrite: bool = False,
+    memory: Optional[str] = None,
     threads: Optional[int] = None,
     progress: Progress = None,
 ) -> Any:
@@ -51,6 +52,9 @@ def ground(
         files; of arrays, and of files that state none, a unit is taken for a meter.
     overwrite : bool
         Replace files that exist.
+    memory : str, optional
+        For files: memory for the points, such as ``"2GB"``; half of what is free by default. What needs more, at 200
+        bytes a point, is filtered in tiles.
     threads, progress
         As for :func:`tin`.
 
@@ -67,7 +71,7 @@ def ground(
     UsageError
         If files have no output, or an array has one.
     LimitError
-        If there is not enough memory: about 200 bytes for each point.
+        If there is not enough memory for an array, at about 200 bytes a point, or for a tile.
 
     Examples
     --------
@@ -80,7 +84,7 @@ def ground(
     """
     how = {"bridges": _inputs.name(bridges, "bridges"), "noise": bool(noise), "crs": _inputs.crs_text(crs)}
     if not _are_paths(points):
-        for name, value in {"output": output, "from_class": from_class, "returns": returns}.items():
+        for name, value in {"output": output, "from_class": from_class, "returns": returns, "memory": memory}.items():
             if value is not None:
                 raise usage(f"{name} is for files, but points are an array", value, f"leave {name} out, or pass paths")
         array = np.require(points, dtype=np.float64, requirements="A")
@@ -91,10 +95,9 @@ def ground(
     if output is None:
         raise usage("files are classified to files, and output is missing", None, "pass output")
     chosen = (_inputs.classes(from_class), _inputs.returns(returns))
+    target = (_inputs.path(output, "output"), bool(overwrite), None if memory is None else str(memory))
     with call(threads, progress) as request:
-        return _breakline.write_ground(
-            _inputs.files(points, "points"), chosen, how, (_inputs.path(output, "output"), bool(overwrite)), request
-        )
+        return _breakline.write_ground(_inputs.files(points, "points"), chosen, how, target, request)
 
 
 def _are_paths(points: Any) -> bool:
