@@ -50,6 +50,7 @@ fn call(command: Command, file: Option<&str>) -> Option<String> {
     let (function, arguments) = match command {
         Command::Info => ("info", ""),
         Command::Points => ("points", ""),
+        Command::Ground => ("ground", ""),
         Command::Tin => ("tin", ""),
         Command::Triangulate => ("triangulate", ""),
         Command::TriangulateInSpace => ("triangulate", "in_space=True"),

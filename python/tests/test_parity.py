@@ -52,7 +52,7 @@ WRITTEN = {
 OF_RESULTS = {
     "check": {"overwrite"},
     "volume": {"output", "overwrite"},
-    "compare": {"output", "overwrite", "overviews"},
+    "compare": {"output", "overwrite", "overviews", "classes"},
     "sample": {"output", "overwrite"},
     "accuracy": {"output", "overwrite", "histogram"},
     # `breakline.simplify` takes what `tin` takes, and returns a Tin.

@@ -197,6 +197,8 @@ pub enum Command {
     Info,
     /// Writes points.
     Points,
+    /// Finds the ground among points.
+    Ground,
     /// Builds a surface.
     Tin,
     /// Triangulates plain points or graphs.
@@ -220,6 +222,7 @@ impl Command {
     pub const ALL: &'static [Command] = &[
         Command::Info,
         Command::Points,
+        Command::Ground,
         Command::Tin,
         Command::Triangulate,
         Command::TriangulateInSpace,
@@ -240,6 +243,7 @@ impl Command {
         match self {
             Command::Info => "info",
             Command::Points => "points",
+            Command::Ground => "ground",
             Command::Tin => "tin",
             Command::Triangulate => "triangulate",
             Command::TriangulateInSpace => "triangulate in space",

@@ -119,6 +119,7 @@ pub use products::cells::{
 };
 pub use products::changed::{AreaOptions, ChangedAreas};
 pub use products::check::{CheckProduct, FlawKind, LocatedFlaw, check, surface_flaws};
+pub use products::class_comparison::{ClassComparison, GroundAgreement, compare_classes};
 pub use products::compare::{CompareOptions, CompareProduct, compare};
 pub use products::contour::{ContourOptions, ContourProduct, contour, write_contours};
 pub use products::contour_map::{ContourMap, MapSummary, contour_map};

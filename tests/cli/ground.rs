@@ -384,3 +384,56 @@ fn files_that_do_not_fit_into_memory_get_the_classes_of_the_whole() {
         assert!((60_000..79_000).contains(&ground), "{ground}");
     }
 }
+
+#[test]
+fn two_classifications_of_the_same_points_are_compared() {
+    let points = town(0..60, 1.0);
+    let mut other = points.clone();
+    other.swap(7, 8);
+    let folder = folder_of(&[
+        ("a.las", las(&points, None)),
+        ("swapped.las", las(&other, None)),
+        ("few.las", las(&points[..2000], None)),
+    ]);
+    run_in(&folder, &["ground", "a.las", "-o", "b.laz"]).works(&[]);
+    let compare = |words: &[&str]| run_in(&folder, &[&["compare", "--classes"], words].concat());
+    let found: Value =
+        serde_json::from_str(&compare(&["b.laz", "a.las", "--json"]).stdout).unwrap();
+    let pairs = |keep: fn(u64, u64) -> bool| -> u64 {
+        let pairs = found["pairs"].as_array().unwrap().iter();
+        let of =
+            |pair: &Value| ["first", "second", "points"].map(|key| pair[key].as_u64().unwrap());
+        let counts = pairs.map(of).filter(|[a, b, _]| keep(*a, *b));
+        counts.map(|[_, _, count]| count).sum()
+    };
+    assert_eq!((&found["points"], pairs(|_, _| true)), (&3000.into(), 3000));
+    // Nothing was ground before: all that is ground is kept wrongly, and none is lost.
+    let classes = expected(&points);
+    let ground = classes.iter().filter(|class| **class & 0x1f == 2).count() as u64;
+    assert_eq!(pairs(|first, _| first == 2), ground);
+    assert_eq!(found["ground"]["type_1"], Value::Null);
+    assert_eq!(found["ground"]["type_2"], ground as f64 / 3000.0);
+    assert_eq!(
+        pairs(|first, second| first != second),
+        found["changed"].as_u64().unwrap()
+    );
+    let text = compare(&["b.laz", "a.las"]).stdout;
+    assert!(text.contains("2 (ground), and 0 ("), "{text}");
+    for (words, said) in [
+        (&["a.las"][..], "nothing to compare it with"),
+        (&["a.las", "few.las"], "2000 points, and a.las has more"),
+        (
+            &["a.las", "swapped.las"],
+            "point 7 (counted from 0) is at 0 7 100, and in swapped.las at 0 8 100",
+        ),
+        (&["a.las", "b.laz", "few.las"], "a third file"),
+        (&["a.las", "b.laz", "--changed", "1"], "cannot be used with"),
+    ] {
+        let run = compare(words);
+        assert!(
+            run.code != 0 && run.stderr.contains(said),
+            "{words:?}: {}",
+            run.stderr
+        );
+    }
+}

@@ -1,6 +1,7 @@
 //! What a run prints: messages, progress and the summary.
 
 pub(super) mod accuracy;
+pub(super) mod class_comparison;
 pub(super) mod commands;
 pub(super) mod comparison;
 pub(super) mod console;

@@ -35,6 +35,7 @@ fn command(command: Command) -> &'static str {
     match command {
         Command::Info => "info",
         Command::Points => "points",
+        Command::Ground => "ground",
         Command::Tin => "tin",
         Command::Triangulate => "triangulate",
         Command::TriangulateInSpace => "triangulate --3d",

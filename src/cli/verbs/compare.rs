@@ -1,11 +1,14 @@
+use std::path::{Path, PathBuf};
+
 use super::pair;
 use super::product::{self, Answer, Outcome, Product, ProductPlan};
 use crate::cli::Exit;
 use crate::cli::input::args::CompareArgs;
 use crate::cli::input::outputs::{Format, Formats, Target, formats_of};
 use crate::cli::input::plan::{SurfacePlan, frame};
-use crate::cli::report::comparison;
 use crate::cli::report::console::Console;
+use crate::cli::report::stdout::print;
+use crate::cli::report::{class_comparison, comparison};
 use crate::error::{Error, Result};
 use crate::io::OutputSet;
 use crate::io::formats::Product as Contents;
@@ -20,8 +23,11 @@ enum Written {
     Areas,
 }
 
-/// Compares two surfaces.
+/// Compares two surfaces, or the classes of points.
 pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<Exit> {
+    if args.classes {
+        return classes(args, console);
+    }
     let asked = Comparison::of(args, None, console)?;
     let surfaces = pair::read(
         &asked,
@@ -32,6 +38,32 @@ pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<Exit> {
     )?;
     let json = args.json.then_some(product::in_lines as _);
     product::finish(&asked, &surfaces, json, console)
+}
+
+/// Counts the points of two files by both of their classes.
+fn classes(args: &CompareArgs, console: &Console) -> Result<Exit> {
+    let files = match &args.surface.inputs[..] {
+        [] => return Err(pair::no_surface()),
+        [one] => return Err(alone(one, "file")),
+        [first, second] => [first, second],
+        [_, _, more, ..] => {
+            return Err(Error::usage("a third file: expected two")
+                .in_file(more)
+                .cure("compare two at a time"));
+        }
+    };
+    let found = run::compare_classes(files.map(PathBuf::as_path), &console.context())?;
+    print(&match args.json {
+        true => product::in_lines(&class_comparison::json(&found)),
+        false => class_comparison::text(&found),
+    })?;
+    Ok(Exit::Done)
+}
+
+fn alone(one: &Path, missing: &str) -> Error {
+    Error::usage("there is nothing to compare it with")
+        .in_file(one)
+        .cure(format!("name a second {missing}"))
 }
 
 /// A comparison that is asked for.
@@ -54,11 +86,7 @@ impl<'a> Comparison<'a> {
     ) -> Result<Self> {
         match &args.surface.inputs[..] {
             [] => return Err(pair::no_surface()),
-            [one] => {
-                return Err(Error::usage("there is nothing to compare it with")
-                    .in_file(one)
-                    .cure("name a second surface"));
-            }
+            [one] => return Err(alone(one, "surface")),
             [_, _] => pair::refuse_tables(&args.surface, "compare")?,
             [_, _, more, ..] => return Err(pair::third(more, "two surfaces")),
         }

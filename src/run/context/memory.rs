@@ -32,6 +32,9 @@ const BYTES_A_MESH_BYTE: u64 = 3;
 /// Bytes per point while the ground is found, with the coordinates.
 const BYTES_A_FILTERED_POINT: u64 = 200;
 
+/// The same in tiles, where points are read from files and numbered.
+const BYTES_A_TILED_POINT: u64 = 280;
+
 /// A need below this is not checked.
 const LITTLE: u64 = 64 << 20;
 
@@ -71,13 +74,17 @@ pub(crate) fn require_for_points(count: usize) -> Result<()> {
 /// Names the memory needed, the free memory, and what to do.
 pub(crate) fn require_for_ground(count: u64) -> Result<()> {
     let what = format!("the ground among {count} points");
-    require(count.saturating_mul(BYTES_A_FILTERED_POINT), &what)
-        .map_err(|e| e.cure("find it in fewer files at once, or in a part of the area"))
+    require(count.saturating_mul(BYTES_A_FILTERED_POINT), &what).map_err(|e| {
+        e.cure(wording![
+            Command::Ground,
+            " works in tiles: write its classes, and use those"
+        ])
+    })
 }
 
 /// Returns how many points the ground can be found among in so many bytes.
 pub(crate) fn filtered_in(bytes: u64) -> usize {
-    usize::try_from(bytes / BYTES_A_FILTERED_POINT).unwrap_or(usize::MAX)
+    usize::try_from(bytes / BYTES_A_TILED_POINT).unwrap_or(usize::MAX)
 }
 
 /// Returns an error if there is not enough memory to double the columns of this many points, as a

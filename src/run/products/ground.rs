@@ -107,7 +107,10 @@ pub(crate) fn ground_in_tiles(
     let mut bounds = Bounds::default();
     if units.is_angular() {
         points(&mut |batch| {
-            batch.iter().for_each(|&point| bounds.add(point));
+            batch
+                .iter()
+                .filter(|point| is_finite(point))
+                .for_each(|&point| bounds.add(point));
             Ok(())
         })?;
     }
@@ -143,10 +146,11 @@ pub(crate) fn ground_in_tiles(
 
 /// Returns points in meters; they are copied if they are in other units.
 fn in_metres<'a>(points: &'a [[f64; 3]], units: &Units) -> Cow<'a, [[f64; 3]]> {
-    let bounds = match units.is_angular() {
-        true => Bounds::around(points),
-        false => Bounds::default(),
-    };
+    let mut bounds = Bounds::default();
+    if units.is_angular() {
+        let finite = points.iter().filter(|point| is_finite(point));
+        finite.for_each(|&point| bounds.add(point));
+    }
     let factors = factors(units, &bounds);
     if factors == [1.0; 3] {
         return Cow::Borrowed(points);
@@ -161,6 +165,10 @@ fn factors(units: &Units, bounds: &Bounds) -> [f64; 3] {
         false => 0.0,
     };
     units.metres_at(latitude)
+}
+
+fn is_finite(point: &[f64; 3]) -> bool {
+    point.iter().all(|value| value.is_finite())
 }
 
 fn scaled(point: &[f64; 3], factors: [f64; 3]) -> [f64; 3] {

@@ -4,6 +4,7 @@ pub(crate) mod accuracy;
 pub(crate) mod cells;
 pub(crate) mod changed;
 pub(crate) mod check;
+pub(crate) mod class_comparison;
 pub(crate) mod compare;
 pub(crate) mod contour;
 pub(crate) mod contour_map;

@@ -58,8 +58,8 @@ pub struct TinRequest {
     #[serde(default)]
     pub returns: Vec<Return>,
     /// Uses only those of these points that a filter finds to be ground; all if `None`. It sees all
-    /// of them, also with bounds. It is not stored: tiles have no filter.
-    #[serde(skip)]
+    /// of them, also with bounds. Tiles have no filter.
+    #[serde(default)]
     pub ground: Option<GroundOptions>,
     /// Lines with heights that the surface must follow; of polygons, the rings are used. At the
     /// vertices of a breakline its heights are used, not those of points.

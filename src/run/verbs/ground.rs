@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use super::output_formats::Format;
 use super::targets::{self, Existing, Target};
 use crate::crs::Crs;
 use crate::data::{PointBatch, PointInfo, PointSource, Return};
-use crate::error::{Command, Error, Result, wording};
+use crate::error::{Command, Error, Kind, Result, wording};
 use crate::io::las::{self, Packing};
 use crate::run::context::large_files::folder_of_large_files;
 use crate::run::context::memory;
@@ -154,16 +155,21 @@ pub fn write_ground(
     outputs.targets.iter().try_for_each(refuse_octree)?;
 
     let chosen = Chosen::of(request);
+    let in_tiles = || {
+        let pass = |take: &mut Take| chosen.pass(&files, count, &journal, take);
+        let folder = folder_of_large_files();
+        let (options, crs) = (&request.options, crs.as_ref());
+        ground_in_tiles(&pass, crs, options, memory, &folder, &journal)
+    };
     let classes = match is_in_tiles {
-        true => {
-            let pass = |take: &mut Take| chosen.pass(&files, count, &journal, take);
-            let folder = folder_of_large_files();
-            let (options, crs) = (&request.options, crs.as_ref());
-            ground_in_tiles(&pass, crs, options, memory, &folder, &journal)
-        }
+        true => in_tiles(),
         false => {
             let points = chosen.read(&files, count, &journal)?;
-            ground_classes(&points, crs.as_ref(), &request.options, context)
+            match ground_classes(&points, crs.as_ref(), &request.options, context) {
+                // Points are too far apart for one grid.
+                Err(error) if error.kind() == Kind::Limit => in_tiles(),
+                found => found,
+            }
         }
     };
     let classes = classes.map_err(|error| match (&request.files[..], error.path()) {
@@ -186,6 +192,8 @@ pub fn write_ground(
             &mut |batch: &mut PointBatch| chosen.put(batch, file, &mut found, &mut written, &work);
         let packing = packing_of(&target.path);
         las::copy_with_classes(&file.path, target.within(&outputs.set), packing, classify)?;
+        file.require_unchanged()?;
+        outputs.set.close_staged()?;
         if file.is_copc {
             journal.add(Notice::OctreeLeftOut(target.path.clone()));
         }
@@ -281,10 +289,13 @@ struct Source {
     is_compressed: bool,
     is_copc: bool,
     stated: Stated,
+    /// The length, and when it was changed last.
+    state: (u64, Option<SystemTime>),
 }
 
 impl Source {
     fn open(path: &Path, journal: &Journal) -> Result<Self> {
+        let state = state_of(path)?;
         if is_read_once(path) {
             return Err(
                 Error::usage("points are read twice, and this can be read only once")
@@ -312,7 +323,16 @@ impl Source {
             is_compressed: header.is_compressed,
             is_copc: header.is_copc(),
             stated: Stated::by_points(path, info),
+            state,
         })
+    }
+
+    /// Returns an error if the file is not the one that was opened: the classes are of its points.
+    fn require_unchanged(&self) -> Result<()> {
+        match state_of(&self.path)? == self.state {
+            true => Ok(()),
+            false => Err(changed().in_file(&self.path)),
+        }
     }
 
     /// Returns the name of the file in a folder of outputs.
@@ -330,6 +350,12 @@ impl Source {
             false => name.with_extension(if self.is_compressed { "laz" } else { "las" }),
         }
     }
+}
+
+/// Returns the length of a file, and when it was changed last.
+fn state_of(path: &Path) -> Result<(u64, Option<SystemTime>)> {
+    let data = std::fs::metadata(path).map_err(|e| Error::from(e).in_file(path))?;
+    Ok((data.len(), data.modified().ok()))
 }
 
 /// Returns how the points of an output are compressed, by its extension.

@@ -21,7 +21,7 @@ pub(super) fn filled(raster: &Raster) -> Raster {
         return raster.clone();
     }
     let (width, height) = (raster.width, raster.height);
-    if width.min(height) <= 2 {
+    if width.max(height) <= 2 {
         let (sum, count) = raster
             .values
             .iter()

@@ -13,8 +13,11 @@ const ALIGNED: f64 = 32.0;
 /// So many cells are always allowed ...
 const CELLS: f64 = (1u32 << 24) as f64;
 
-/// ... and so many for each point.
-const CELLS_FOR_EACH: f64 = 64.0;
+/// ... and so many for each point ...
+const CELLS_FOR_EACH: f64 = 8.0;
+
+/// ... but no more than this, because they are numbered with 32 bits.
+const MOST_CELLS: f64 = (1u32 << 29) as f64;
 
 /// Heights above the datum are at most this, in meters, and no less than its negative.
 const HEIGHTS: f64 = 1e6;
@@ -55,7 +58,11 @@ impl Cells {
         let number = |axis: usize, value: f64| ((value - cells.origin[axis]) / side).floor();
         let first = [0, 1].map(|axis| (number(axis, low[axis]) / ALIGNED).floor() * ALIGNED);
         let counts = [0, 1].map(|axis| number(axis, high[axis]) - first[axis] + 1.0);
-        if counts[0] * counts[1] > CELLS.max(CELLS_FOR_EACH * points.len() as f64) {
+        if counts[0] * counts[1]
+            > CELLS
+                .max(CELLS_FOR_EACH * points.len() as f64)
+                .min(MOST_CELLS)
+        {
             let [across, down] = [0, 1].map(|axis| Plain((high[axis] - low[axis]).round()));
             return Err(Error::limit(format!(
                 "{} points over {across} by {down} m are too far apart for cells of {side:.2} m",

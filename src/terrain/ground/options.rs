@@ -3,7 +3,7 @@
 use super::GroundGrid;
 
 /// How the ground is to be found.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
 pub struct GroundOptions {
     /// What becomes of bridges; by default they are off the ground.
     pub bridges: Bridges,
@@ -16,7 +16,7 @@ pub struct GroundOptions {
 }
 
 /// What becomes of bridges.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub enum Bridges {
     /// They are objects, and the terrain below them is the ground.
     #[default]

@@ -13,7 +13,7 @@ const HIGHEST: f64 = 1e5;
 /// The grid on which the ground is searched.
 ///
 /// Tiles of a job that use the same one agree on the ground away from their borders.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct GroundGrid {
     /// The lowest coordinates, and a height near the mean, in meters.
     pub origin: [f64; 3],

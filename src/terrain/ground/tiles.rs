@@ -12,6 +12,9 @@ use crate::terrain::records::{Record, SortedRecords, Sorter};
 /// So many squares are the least reach of points.
 const REACH: u32 = 4;
 
+/// So many cells of the grid take as much memory as a point.
+const CELLS: f64 = 6.0;
+
 /// Tiles answer for points this many times nearer than the reach, too, to be compared.
 const STRIP: f64 = 8.0;
 
@@ -64,7 +67,7 @@ pub struct Doubt {
 ///
 /// # Complexity
 /// That of [`classify`], for some more points, and O(n log n) to sort them. Memory: that of the
-/// largest tile, and one byte a point.
+/// largest tile, one byte a point, and 32 for each point within an eighth of the reach of a border.
 pub fn classify_in_tiles(
     points: &dyn Fn(&mut Take) -> Result<()>,
     options: &GroundOptions,
@@ -98,8 +101,8 @@ pub fn classify_in_tiles(
     found.tiles = tiles.len();
 
     let mut votes = Vec::new();
-    for tile in &tiles {
-        let filtered = squares.filter(tile, REACH, &options, cancel)?;
+    for (number, tile) in tiles.iter().enumerate() {
+        let filtered = squares.filter((number, tile), REACH, &options, cancel)?;
         for &(index, class) in &filtered.own {
             found.classes[index] = class;
         }
@@ -111,9 +114,10 @@ pub fn classify_in_tiles(
         if found.classes[vote.index] != vote.class {
             let is_in = |tile: &Tile| tile.contains(vote.square);
             disputed.extend(tiles.iter().position(is_in));
+            disputed.insert(vote.tile);
         }
     }
-    for tile in disputed.into_iter().map(|number| &tiles[number]) {
+    for tile in disputed.into_iter().map(|number| (number, &tiles[number])) {
         let doubt = squares.agree(tile, &options, limits, cancel, &mut found.classes)?;
         found.doubts.extend(doubt);
     }
@@ -164,6 +168,8 @@ impl Tile {
 
 /// What a tile says of a point of its neighbor.
 struct Vote {
+    /// The number of the tile.
+    tile: usize,
     index: usize,
     square: [u32; 2],
     class: PointClass,
@@ -179,6 +185,8 @@ struct Filtered {
 struct Squares {
     origin: [f64; 2],
     side: f64,
+    /// The number of cells of the grid in a square.
+    cells: f64,
     /// The number of points of each square that has some, by row and column.
     counts: BTreeMap<(u32, u32), usize>,
     records: SortedRecords<4>,
@@ -215,6 +223,7 @@ impl Squares {
         Ok(Squares {
             origin: [x, y],
             side,
+            cells: (side / grid.spacing.max(1.0)).powi(2),
             counts,
             records: SortedRecords::of(sorter)?,
         })
@@ -230,7 +239,7 @@ impl Squares {
         }];
         let mut tiles = Vec::new();
         while let Some(tile) = open.pop() {
-            let around = self.count(&tile.grown(REACH));
+            let around = self.load(&tile.grown(REACH));
             if self.count(&tile) == 0 {
                 continue;
             }
@@ -253,6 +262,24 @@ impl Squares {
         .cure(wording!["give more memory, with ", Setting::Memory])
     }
 
+    /// Returns how many points take the memory of a tile: of its points, or of its cells, if they
+    /// are many.
+    fn load(&self, tile: &Tile) -> usize {
+        let mut bounds: Option<[Range<u32>; 2]> = None;
+        let mut points = 0;
+        for (&(row, column), count) in self.within(tile) {
+            points += count;
+            let [columns, rows] = bounds.get_or_insert([column..column + 1, row..row + 1]);
+            columns.start = columns.start.min(column);
+            columns.end = columns.end.max(column + 1);
+            rows.end = row + 1;
+        }
+        let squares = bounds.map_or(0.0, |[columns, rows]| {
+            f64::from(columns.end - columns.start) * f64::from(rows.end - rows.start)
+        });
+        points.max((squares * self.cells / CELLS) as usize)
+    }
+
     fn count(&self, tile: &Tile) -> usize {
         self.within(tile).map(|(_, count)| count).sum()
     }
@@ -267,7 +294,7 @@ impl Squares {
     /// Filters a tile with so many squares around it.
     fn filter(
         &self,
-        tile: &Tile,
+        (number, tile): (usize, &Tile),
         around: u32,
         options: &GroundOptions,
         cancel: &AtomicBool,
@@ -301,6 +328,7 @@ impl Squares {
                 filtered.own.push((index, class));
             } else if is_near(point) {
                 filtered.strip.push(Vote {
+                    tile: number,
                     index,
                     square,
                     class,
@@ -328,7 +356,7 @@ impl Squares {
     /// Filters a tile again with ever more around it, until its classes stay.
     fn agree(
         &self,
-        tile: &Tile,
+        (number, tile): (usize, &Tile),
         options: &GroundOptions,
         limits: &GroundTiles,
         cancel: &AtomicBool,
@@ -338,14 +366,14 @@ impl Squares {
         let mut changed = None;
         while self.count(&tile.grown(around)) < self.counts.values().sum() {
             around *= 2;
-            if self.count(&tile.grown(around)) > limits.at_once {
+            if self.load(&tile.grown(around)) > limits.at_once {
                 // The first dispute is with a neighbor, and not counted in points.
                 return Ok(Some(Doubt {
                     tile: self.extent(tile),
                     points: changed.unwrap_or(0),
                 }));
             }
-            let own = self.filter(tile, around, options, cancel)?.own;
+            let own = self.filter((number, tile), around, options, cancel)?.own;
             let differ = own
                 .iter()
                 .filter(|&&(index, class)| classes[index] != class);

@@ -21,8 +21,17 @@ Example:
   breakline compare june.laz may.laz --resolution 0.5 -o difference.tif
   breakline compare delivered.tif check.tin --worst 20 --json
   breakline compare new.tif old.tif --changed 0.25
-  breakline compare june.tin may.tin --changed 0.25 --min-area 10 -o changed.shp")]
+  breakline compare june.tin may.tin --changed 0.25 --min-area 10 -o changed.shp
+  breakline compare --classes filtered.laz delivered.laz")]
 pub(crate) struct CompareArgs {
+    /// Compare the classes of the same points in two files, in the same order
+    ///
+    /// Counts points by both classes. Type I is the share of the ground (class 2) of the second
+    /// file that is none in the first; type II is what is ground in the first only, as a share of
+    /// what is no ground in the second. Of the other options, --json alone goes with it.
+    #[arg(long, conflicts_with_all = ["changed", "min_area", "output"], help_heading = "Comparison")]
+    pub(crate) classes: bool,
+
     /// How many of the places with the largest differences are listed
     ///
     /// They are at least 8 cells apart.

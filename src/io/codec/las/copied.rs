@@ -335,6 +335,8 @@ impl Source {
         let Some(Slice::Of(first)) = after.first() else {
             return;
         };
+        // What is said to lie behind the end is nowhere, and is said so in the copy, too.
+        let is_there = |position: u64| (first.start..=self.input.length).contains(&position);
         // The position in the copy of what is at a position of the source, or would be there.
         let moved = |position: u64| {
             let mut at = end;
@@ -354,11 +356,11 @@ impl Source {
                 field.copy_from_slice(bytes);
             }
         };
-        if let Some(waveforms) = waveforms.filter(|&waveforms| waveforms >= first.start) {
+        if let Some(waveforms) = waveforms.filter(|&waveforms| is_there(waveforms)) {
             put(WAVEFORM_START, &moved(waveforms).to_le_bytes());
         }
         let (start, count) = (self.header.layout.evlr_start, self.header.layout.evlr_count);
-        if count > 0 && start >= first.start {
+        if count > 0 && is_there(start) {
             let octrees = after.len() as u64 - 1;
             let left = count - octrees.min(count);
             let start = if left > 0 { moved(start) } else { 0 };
