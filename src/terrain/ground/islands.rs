@@ -7,9 +7,9 @@ use super::recipe::Recipe;
 /// Calls those parts of the ground objects that stand above all that is around them.
 ///
 /// A part hangs together without steps of half of [`Recipe::drop`]. It is an object if nine tenths
-/// of its border are steps down by the whole, and more than half of it is known: steps up to objects
-/// do not count, and beyond the rim of the raster nothing is known. So roofs are found that are
-/// wider than the widest window, also those that a tile cuts.
+/// of its border are steps down by the whole, and more than half of it is known: steps up to
+/// objects do not count, and beyond the rim of the raster nothing is known. So roofs are found that
+/// are wider than the widest window, also those that a tile cuts.
 pub(super) fn remove(objects: &mut [bool], graph: &Graph, heights: &[f32], recipe: &Recipe) {
     let drop = recipe.drop as f32;
     let mut parts = Parts::of(objects.len());
