@@ -7,9 +7,8 @@ use super::recipe::Recipe;
 /// Calls those parts of the ground objects that stand above all that is around them.
 ///
 /// A part hangs together without steps of half of [`Recipe::drop`]. It is an object if nine tenths
-/// of its border are steps down by the whole, and more than half of it is known: steps up to
-/// objects do not count, and beyond the rim of the raster nothing is known. So roofs are found that
-/// are wider than the widest window, also those that a tile cuts.
+/// of its border are steps down by the whole; steps up to objects do not count, the rim of the
+/// raster counts as no step. So roofs are found that are wider than the widest window.
 pub(super) fn remove(objects: &mut [bool], graph: &Graph, heights: &[f32], recipe: &Recipe) {
     let drop = recipe.drop as f32;
     let mut parts = Parts::of(objects.len());
@@ -41,13 +40,11 @@ pub(super) fn remove(objects: &mut [bool], graph: &Graph, heights: &[f32], recip
             }
         }
     }
-    let mut rims = vec![0i64; objects.len()];
-    for (node, faces) in graph.rims.iter().enumerate() {
-        rims[parts.root(node as u32) as usize] += i64::from(*faces);
+    for node in 0..objects.len() {
+        borders[parts.root(node as u32) as usize][1] += i64::from(graph.rims[node]);
     }
-    for (node, object) in objects.iter_mut().enumerate() {
-        let root = parts.root(node as u32) as usize;
-        let [down, other] = borders[root];
-        *object |= down > 9 * other && down > rims[root];
+    for node in 0..objects.len() {
+        let [down, other] = borders[parts.root(node as u32) as usize];
+        objects[node] |= down > 9 * other;
     }
 }
