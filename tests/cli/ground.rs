@@ -353,7 +353,7 @@ fn the_page_on_raw_tiles_runs() {
 
 #[test]
 fn files_that_do_not_fit_into_memory_get_the_classes_of_the_whole() {
-    // Hills with houses, in two files that share a border. 16 MB have room for half of the points.
+    // Hills with houses, in two files that share a border. 32 MB have room for some of the points.
     let of_columns = |columns: std::ops::Range<u32>| {
         let cells = columns.flat_map(|i| (0..400).map(move |j| (i, j)));
         let point = |(i, j): (u32, u32)| {
@@ -371,7 +371,7 @@ fn files_that_do_not_fit_into_memory_get_the_classes_of_the_whole() {
     let ground = ["ground", "west.las", "east.las"];
     let whole = run_in(&folder, &[&ground[..], &["-o", "whole"]].concat());
     whole.works(&[]);
-    let few = ["-o", "tiled", "--memory", "16MB"];
+    let few = ["-o", "tiled", "--memory", "32MB"];
     let tiled = run_in(&folder, &[&ground[..], &few].concat());
     tiled.works(&[]);
     for name in ["west.las", "east.las"] {

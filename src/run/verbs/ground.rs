@@ -295,7 +295,6 @@ struct Source {
 
 impl Source {
     fn open(path: &Path, journal: &Journal) -> Result<Self> {
-        let state = state_of(path)?;
         if is_read_once(path) {
             return Err(
                 Error::usage("points are read twice, and this can be read only once")
@@ -311,6 +310,7 @@ impl Source {
                 " and the other commands that build a surface find the ground of any points"
             ]));
         }
+        let state = state_of(path)?;
         let reader = las::open(path)?;
         let info: &PointInfo = reader.info();
         journal.add(Notice::Opened(path.to_path_buf(), info.format.clone()));
