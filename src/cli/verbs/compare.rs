@@ -84,6 +84,12 @@ impl<'a> Comparison<'a> {
         given: Option<&SurfacePlan>,
         console: &Console,
     ) -> Result<Self> {
+        if args.classes {
+            return Err(
+                Error::usage("classes are of files of points, and this compares surfaces")
+                    .cure("compare classes by a command of its own"),
+            );
+        }
         match &args.surface.inputs[..] {
             [] => return Err(pair::no_surface()),
             [one] => return Err(alone(one, "surface")),
