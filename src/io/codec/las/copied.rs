@@ -14,7 +14,7 @@ use super::head::{self, Span, is_laszip, is_of_octree};
 use super::header::Header;
 use super::input::Input;
 use super::laz::MAX_CHUNK_POINTS;
-use super::packed::{failed, items, laszip_record};
+use super::packed::{compressing, ended, failed, items, laszip_record};
 use super::raw::MAX_HEADER;
 use super::reader::Points;
 use super::records;
@@ -22,7 +22,6 @@ use super::write::{BATCH_BYTES, Packing};
 use crate::data::PointBatch;
 use crate::error::{Error, Result};
 use crate::io::OnDamage;
-use crate::io::bytes::contain::contain;
 use crate::io::bytes::little_endian::{u16_at, u64_at};
 use crate::io::bytes::output::{Destination, Output};
 use crate::io::options::las::{Detail, ReadOptions};
@@ -114,14 +113,15 @@ struct Around {
     header: Vec<u8>,
     /// From the header to the points.
     before: Vec<Slice>,
-    after: Vec<Slice>,
+    /// Bytes of the source.
+    after: Vec<Range<u64>>,
     /// How the points are to be compressed.
     laszip: Option<LazVlr>,
 }
 
 impl Source {
     fn open(path: &Path) -> Result<Self> {
-        // What is odd was reported when the file was read before.
+        // These warnings were reported when the points were read for the filter.
         let mut warnings = Vec::new();
         let mut input = Input::open(path)?;
         let bytes = input.bytes(0, MAX_HEADER)?;
@@ -156,7 +156,12 @@ impl Source {
         let mut output = target.create_seekable()?;
         let to_target = |error: io::Error| Error::from(error).in_file(target.path());
         output.write_all(&around.header).map_err(to_target)?;
-        self.copy_slices(&around.before, &mut output, target.path())?;
+        for slice in &around.before {
+            match slice {
+                Slice::Of(bytes) => self.copy_bytes(bytes, &mut output, target.path())?,
+                Slice::New(bytes) => output.write_all(bytes).map_err(to_target)?,
+            }
+        }
 
         let mut body = Body::of(output, around.laszip.take())?;
         let mut batch = PointBatch::default();
@@ -173,7 +178,9 @@ impl Source {
         let mut output = body.end().map_err(|e| e.in_file(target.path()))?;
 
         let end = output.stream_position().map_err(to_target)?;
-        self.copy_slices(&around.after, &mut output, target.path())?;
+        for bytes in &around.after {
+            self.copy_bytes(bytes, &mut output, target.path())?;
+        }
         self.move_late(&mut around, end);
         output
             .rewind()
@@ -278,19 +285,19 @@ impl Source {
     ///
     /// # Errors
     /// If the octree has to be left out, and extended records are damaged.
-    fn after(&mut self, start: u64, has_octree: bool) -> Result<Vec<Slice>> {
+    fn after(&mut self, start: u64, has_octree: bool) -> Result<Vec<Range<u64>>> {
         let end = self.input.length;
         if !has_octree {
-            return Ok(vec![Slice::Of(start..end)]);
+            return Ok(std::iter::once(start..end).collect());
         }
-        let (mut slices, mut position) = (Vec::new(), start);
+        let (mut ranges, mut position) = (Vec::new(), start);
         let found = head::late_records(&mut self.input, &self.header)?;
         for Span { bytes, .. } in found.iter().filter(|span| is_of_octree(&span.record)) {
-            slices.push(Slice::Of(position..bytes.start.max(position)));
+            ranges.push(position..bytes.start.max(position));
             position = bytes.end.max(position);
         }
-        slices.push(Slice::Of(position..end));
-        Ok(slices)
+        ranges.push(position..end);
+        Ok(ranges)
     }
 
     /// Returns where what follows the points begins. Of compressed points, the end is not stated.
@@ -332,20 +339,19 @@ impl Source {
     /// the copy.
     fn move_late(&self, around: &mut Around, end: u64) {
         let after = &around.after;
-        let Some(Slice::Of(first)) = after.first() else {
+        let Some(first) = after.first() else {
             return;
         };
-        // What is said to lie behind the end is nowhere, and is said so in the copy, too.
+        // A position beyond the end of the source points to nothing, and is copied as it is.
         let is_there = |position: u64| (first.start..=self.input.length).contains(&position);
         // The position in the copy of what is at a position of the source, or would be there.
         let moved = |position: u64| {
             let mut at = end;
-            for slice in after {
-                let Slice::Of(bytes) = slice else { continue };
+            for bytes in after {
                 if position < bytes.end {
                     return at + position.saturating_sub(bytes.start);
                 }
-                at += slice.length();
+                at += bytes.end - bytes.start;
             }
             at
         };
@@ -397,24 +403,17 @@ impl Source {
     }
 
     /// Copies bytes of the source. Errors of writing name the target.
-    fn copy_slices(&mut self, slices: &[Slice], output: &mut Output, target: &Path) -> Result<()> {
-        let to_target = |error: io::Error| Error::from(error).in_file(target);
-        for slice in slices {
-            match slice {
-                Slice::New(bytes) => output.write_all(bytes).map_err(to_target)?,
-                Slice::Of(range) => {
-                    let mut at = range.start;
-                    while at < range.end {
-                        let bytes = self.input.bytes(at, (range.end - at).min(BLOCK) as usize)?;
-                        if bytes.is_empty() {
-                            return Err(Error::format("the file became shorter while it was read")
-                                .at(format!("byte {at}")));
-                        }
-                        output.write_all(&bytes).map_err(to_target)?;
-                        at += bytes.len() as u64;
-                    }
-                }
+    fn copy_bytes(&mut self, bytes: &Range<u64>, output: &mut Output, target: &Path) -> Result<()> {
+        let mut at = bytes.start;
+        while at < bytes.end {
+            let block = self.input.bytes(at, (bytes.end - at).min(BLOCK) as usize)?;
+            if block.is_empty() {
+                return Err(Error::format("the file became shorter while it was read")
+                    .at(format!("byte {at}")));
             }
+            let written = output.write_all(&block);
+            written.map_err(|error| Error::from(error).in_file(target))?;
+            at += block.len() as u64;
         }
         Ok(())
     }
@@ -481,11 +480,11 @@ impl Body {
         if records.is_empty() {
             return Ok(());
         }
-        let compressed = contain(|| match compressor.vlr().uses_variable_size_chunks() {
+        let compressed = compressing(|| match compressor.vlr().uses_variable_size_chunks() {
             true => compressor.compress_chunks(records),
             false => compressor.compress_many(&records.concat()),
         });
-        Ok(compressed.ok_or_else(not_compressed)??)
+        Ok(compressed??)
     }
 
     /// Writes what waits, and returns the output behind the points.
@@ -493,18 +492,11 @@ impl Body {
         self.flush()?;
         match self {
             Body::Plain(output) => Ok(output),
-            Body::Compressed { mut compressor, .. } => {
-                let done = contain(|| compressor.done()).ok_or_else(not_compressed)?;
-                done.map_err(failed)?;
-                let mut output = compressor.into_inner();
+            Body::Compressed { compressor, .. } => {
+                let mut output = ended(compressor)?;
                 output.seek(SeekFrom::End(0))?;
                 Ok(output)
             }
         }
     }
-}
-
-#[cold]
-fn not_compressed() -> Error {
-    Error::format("compressing the points failed")
 }

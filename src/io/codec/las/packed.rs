@@ -1,9 +1,11 @@
 //! What writers of compressed points share.
 
-use laz::{LazItem, LazItemRecordBuilder, LazVlr};
+use laz::{LazItem, LazItemRecordBuilder, LazVlr, ParLasZipCompressor};
 
 use super::merge;
 use crate::error::{Error, Kind, Result};
+use crate::io::bytes::contain::contain;
+use crate::io::bytes::output::Output;
 
 /// Returns the items into which LASzip divides a record, for the point format and extra bytes.
 ///
@@ -26,6 +28,23 @@ pub(super) fn laszip_record(items: &LazVlr) -> Result<Vec<u8>> {
     let mut record = merge::record_header(user, id, length, LazVlr::DESCRIPTION);
     record.extend(payload);
     Ok(record)
+}
+
+/// Runs a compressor.
+///
+/// # Errors
+/// If it panics.
+pub(super) fn compressing<T>(compress: impl FnOnce() -> T) -> Result<T> {
+    contain(compress).ok_or_else(|| Error::format("compressing the points failed"))
+}
+
+/// Ends the compressed points, and returns the output, anywhere in them.
+///
+/// # Errors
+/// If the last points cannot be compressed or written.
+pub(super) fn ended(mut compressor: Box<ParLasZipCompressor<Output>>) -> Result<Output> {
+    compressing(|| compressor.done())?.map_err(failed)?;
+    Ok(compressor.into_inner())
 }
 
 /// Returns the error of a compressor.

@@ -9,10 +9,9 @@ use laz::{LazVlr, LazVlrBuilder, ParLasZipCompressor};
 
 use super::copc::{self, Gathered, Widening};
 use super::merge::{self, LatticeStep, Rounding};
-use super::packed::{failed, items, laszip_record};
+use super::packed::{compressing, ended, failed, items, laszip_record};
 use crate::data::{Bounds, LasHead, Lattice, PointBatch, PointInfo, PointSink, PointSummary};
 use crate::error::{Error, Result};
-use crate::io::bytes::contain::contain;
 use crate::io::bytes::little_endian::u32_at;
 use crate::io::bytes::output::{Destination, Output};
 
@@ -171,8 +170,7 @@ impl LasWriter<'_> {
     fn flush(&mut self) -> Result<()> {
         let written = match &mut self.body {
             Body::Plain(output) => output.write_all(&self.waiting).map_err(Error::from),
-            Body::Compressed(compressor) => contain(|| compressor.compress_many(&self.waiting))
-                .ok_or_else(|| Error::format("compressing the points failed"))
+            Body::Compressed(compressor) => compressing(|| compressor.compress_many(&self.waiting))
                 .and_then(|written| Ok(written?)),
             Body::Octree(_, gathered) => gathered.push(&self.waiting),
             Body::Done => Ok(()),
@@ -326,12 +324,7 @@ impl PointSink for LasWriter<'_> {
         };
         let (mut output, late_start) = match body {
             Body::Plain(output) | Body::Octree(output, _) => end(output),
-            Body::Compressed(mut compressor) => {
-                let done = contain(|| compressor.done())
-                    .ok_or_else(|| Error::format("compressing the points failed"))?;
-                done.map_err(failed)
-                    .and_then(|()| end(compressor.into_inner()))
-            }
+            Body::Compressed(compressor) => ended(compressor).and_then(end),
             Body::Done => Err(Error::usage("the points have already been written")),
         }
         .map_err(|e| e.in_file(self.target.path()))?;

@@ -22,12 +22,11 @@ use self::list::List;
 pub(super) use self::widen::Widening;
 use super::merge::record_header;
 use super::node::{INFO, Key};
-use super::packed::failed;
+use super::packed::{compressing, failed};
 use super::raw::{EVLR_HEADER, MAX_HEADER, VLR_HEADER};
 use super::system::{WKT_BIT, is_of_system, state_system};
 use crate::data::{Bounds, LasHead, Lattice, PointInfo};
 use crate::error::{Error, Result};
-use crate::io::bytes::contain::contain;
 use crate::io::bytes::little_endian::{f64_at, u16_at};
 use crate::io::bytes::output::{Destination, Output};
 
@@ -241,9 +240,7 @@ fn compressed(node: &Node, laz: &LazVlr) -> Result<Vec<u8>> {
         bytes.drain(..ChunkTable::OFFSET_SIZE.min(bytes.len()));
         Ok(bytes)
     };
-    contain(compress)
-        .ok_or_else(|| Error::format("compressing the points failed"))?
-        .map_err(failed)
+    compressing(compress)?.map_err(failed)
 }
 
 fn size_of(bytes: &[u8]) -> Result<u32> {
