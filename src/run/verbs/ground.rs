@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
+use super::new_folder::NewFolder;
 use super::output_formats::Format;
 use super::targets::{self, Existing, Target};
 use crate::crs::Crs;
@@ -72,8 +73,6 @@ impl GroundRequest {
 pub struct GroundReport {
     /// Each file, in the order of the request.
     pub files: Vec<GroundFile>,
-    /// The coordinate system of all files.
-    pub crs: Option<Crs>,
     /// What was assumed and what looks wrong, in the order in which it was found.
     pub notices: Vec<Notice>,
 }
@@ -126,7 +125,7 @@ pub fn write_ground(
     context: &Context,
 ) -> Result<GroundReport> {
     let journal = Journal::new(context);
-    let folder = Folder::of(output, request.files.len())?;
+    let folder = folder_of(output, request.files.len())?;
     let files = request
         .files
         .iter()
@@ -146,7 +145,7 @@ pub fn write_ground(
     let named: Vec<PathBuf> = files
         .iter()
         .map(|file| match &folder {
-            Some(folder) => folder.path.join(file.name()),
+            Some(folder) => folder.path().join(file.name()),
             None => output.to_path_buf(),
         })
         .collect();
@@ -178,10 +177,7 @@ pub fn write_ground(
     })?;
     let work = journal.start(Stage::WritingPoints, Size::Items(count))?;
     let mut found = classes.into_iter();
-    let mut report = GroundReport {
-        crs,
-        ..GroundReport::default()
-    };
+    let mut report = GroundReport::default();
     for (file, target) in files.iter().zip(&outputs.targets) {
         let mut written = GroundFile {
             path: file.path.clone(),
@@ -233,52 +229,24 @@ fn changed() -> Error {
     Error::format("the file changed while it was read").cure("run it again once it is complete")
 }
 
-/// The folder of several outputs. One that is new is removed unless it is to be kept.
-struct Folder {
-    path: PathBuf,
-    is_new: bool,
-}
-
-impl Folder {
-    /// Returns the folder that an output for so many files names; `None` if it names a file.
-    ///
-    /// # Errors
-    /// If a folder is needed and it is a file, or it cannot be created.
-    fn of(output: &Path, files: usize) -> Result<Option<Self>> {
-        let ends_like_one = output.to_string_lossy().ends_with(std::path::is_separator);
-        let is_one = output.is_dir() || ends_like_one || output.extension().is_none();
-        if output.exists() && !output.is_dir() || !is_one {
-            return match files {
-                1 => Ok(None),
-                _ => Err(Error::usage(format!(
-                    "{files} files are classified, each into a file of its own, and one output is named"
-                ))
-                .in_file(output)
-                .cure("name a folder for them")),
-            };
-        }
-        let is_new = !output.exists();
-        if is_new {
-            std::fs::create_dir(output).map_err(|e| Error::from(e).in_file(output))?;
-        }
-        Ok(Some(Folder {
-            path: output.to_path_buf(),
-            is_new,
-        }))
+/// Returns the folder that an output for so many files names; `None` if it names a file.
+///
+/// # Errors
+/// If a folder is needed and it is a file, or it cannot be created.
+fn folder_of(output: &Path, files: usize) -> Result<Option<NewFolder>> {
+    let ends_like_one = output.to_string_lossy().ends_with(std::path::is_separator);
+    let is_one = output.is_dir() || ends_like_one || output.extension().is_none();
+    if output.exists() && !output.is_dir() || !is_one {
+        return match files {
+            1 => Ok(None),
+            _ => Err(Error::usage(format!(
+                "{files} files are classified, each into a file of its own, and one output is named"
+            ))
+            .in_file(output)
+            .cure("name a folder for them")),
+        };
     }
-
-    fn keep(mut self) {
-        self.is_new = false;
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        if self.is_new {
-            // Fails if something else is in it.
-            let _ = std::fs::remove_dir(&self.path);
-        }
-    }
+    NewFolder::at(output).map(Some)
 }
 
 /// A file to be classified, by its header.

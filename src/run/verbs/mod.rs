@@ -7,6 +7,7 @@ mod contour;
 mod dem;
 pub(crate) mod ground;
 mod hillshade;
+mod new_folder;
 mod output_formats;
 pub(crate) mod point_tiles;
 mod quantity;

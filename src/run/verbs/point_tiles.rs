@@ -10,6 +10,7 @@ use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use super::new_folder::NewFolder;
 use super::targets::{Existing, identity};
 use crate::data::{Bounds, PointBatch, PointFlags, PointInfo, PointSink, PointSummary};
 use crate::error::{Error, Result, Setting, wording};
@@ -110,10 +111,7 @@ pub fn write_point_tiles(
     tiles: &PointTiles,
     context: &Context,
 ) -> Result<(PointsReport, usize)> {
-    let is_new = !tiles.folder.exists();
-    if is_new {
-        std::fs::create_dir(&tiles.folder).map_err(|e| Error::from(e).in_file(&tiles.folder))?;
-    }
+    let folder = NewFolder::at(&tiles.folder)?;
     let set = OutputSet::default();
     let mut written = 0;
     let report = transfer(
@@ -126,12 +124,10 @@ pub fn write_point_tiles(
             Ok(Box::new(sorted) as Box<dyn PointSink>)
         },
     );
-    let report = report.and_then(|report| set.commit().map(|_| report));
-    if report.is_err() && is_new {
-        // Fails if something else is in it.
-        let _ = std::fs::remove_dir(&tiles.folder);
-    }
-    Ok((report?, written))
+    let report = report?;
+    set.commit()?;
+    folder.keep();
+    Ok((report, written))
 }
 
 /// A tile while points are read.
