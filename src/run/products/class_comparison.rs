@@ -3,41 +3,51 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use super::ground::GROUND;
 use crate::data::{PointBatch, PointSource};
 use crate::error::{Error, Plain, Result};
 use crate::io::points;
 use crate::run::context::{Context, Journal, Size, Stage};
 
-use super::ground::GROUND;
-
-/// A point may be rounded differently in two files, by this share of its coordinates.
+/// Two files may round the same coordinate differently, by this share of it.
 const ROUNDING: f64 = 1e-12;
 
 /// How many points have which class in two files.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ClassComparison {
-    /// The number of points that have one class in the first file and another, or the same, in the
-    /// second.
+    /// For a class in the first file and a class in the second, the number of points that have both.
     pub pairs: BTreeMap<[u8; 2], u64>,
 }
 
-/// How well the ground of one classification is that of another, as shares of points.
+/// How well the ground (class 2) of a first classification agrees with that of a second: shares,
+/// from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GroundAgreement {
-    /// Of the ground of the second, how much is none in the first (type I); NaN without ground.
+    /// Type I error: the share of the second's ground points that are not ground in the first. NaN
+    /// if the second has no ground.
     pub lost: f64,
-    /// Of what is no ground in the second, how much is ground in the first (type II); NaN if all is
-    /// ground.
+    /// Type II error: the share of the second's other points that are ground in the first. NaN if
+    /// the second has ground only.
     pub kept: f64,
-    /// Of all points, how many are ground in one of both only; NaN without points.
+    /// Total error: the share of all points that are ground in only one of the two. NaN without
+    /// points.
     pub total: f64,
-    /// Cohen's kappa (1960): 1 if both agree, 0 if no better than by chance; NaN if chance cannot
-    /// disagree.
+    /// Cohen's kappa (1960): 1 if the two agree, 0 if they agree no more often than by chance. NaN
+    /// if both have ground only, or none.
     pub kappa: f64,
 }
 
 impl ClassComparison {
+    fn of(table: &[u64]) -> Self {
+        let counts = (0..=u16::MAX).zip(table).filter(|(_, count)| **count > 0);
+        ClassComparison {
+            pairs: counts
+                .map(|(pair, count)| (pair.to_be_bytes(), *count))
+                .collect(),
+        }
+    }
+
     /// Returns the number of points.
     pub fn points(&self) -> u64 {
         self.pairs.values().sum()
@@ -72,7 +82,8 @@ impl ClassComparison {
     }
 }
 
-/// Counts the classes of the same points in two files, which have them in the same order.
+/// Counts the points of two files by their classes in both. The files have the same points in the
+/// same order.
 ///
 /// # Errors
 /// If a file has no classes, a point is at another position, one file has more points, a file is
@@ -88,7 +99,8 @@ pub fn compare_classes(files: [&Path; 2], context: &Context) -> Result<ClassComp
         None => Size::Uncounted,
     };
     let work = journal.start(Stage::ReadingPoints, size)?;
-    let mut comparison = ClassComparison::default();
+    // Of each class in the first file, those of the second.
+    let mut table = vec![0u64; 1 << 16];
     let mut number = 0;
     loop {
         let [first, second] = &mut sides;
@@ -96,7 +108,7 @@ pub fn compare_classes(files: [&Path; 2], context: &Context) -> Result<ClassComp
         let count = counts[0].min(counts[1]);
         if count == 0 {
             return match counts {
-                [0, 0] => work.end().map(|()| comparison),
+                [0, 0] => work.end().map(|()| ClassComparison::of(&table)),
                 [0, _] => Err(first.ends(number, second.path)),
                 _ => Err(second.ends(number, first.path)),
             };
@@ -112,7 +124,7 @@ pub fn compare_classes(files: [&Path; 2], context: &Context) -> Result<ClassComp
                 ));
             }
             let classes = [&*first, &*second].map(|side| side.batch.class[side.next + k]);
-            *comparison.pairs.entry(classes).or_default() += 1;
+            table[usize::from(u16::from_be_bytes(classes))] += 1;
         }
         first.next += count;
         second.next += count;

@@ -420,6 +420,8 @@ impl<'a> Chosen<'a> {
         written: &mut GroundFile,
         work: &Work,
     ) -> Result<()> {
+        // A look into a map for each point would take as long as the rest.
+        let mut counts = [[0u64; 256]; 2];
         for i in 0..batch.len() {
             let before = batch.class[i];
             let after = match self.fate(batch, i) {
@@ -435,8 +437,15 @@ impl<'a> Chosen<'a> {
                 }
             };
             batch.class[i] = after;
-            *written.before.entry(before).or_default() += 1;
-            *written.after.entry(after).or_default() += 1;
+            counts[0][usize::from(before)] += 1;
+            counts[1][usize::from(after)] += 1;
+        }
+        for (map, counts) in [&mut written.before, &mut written.after]
+            .into_iter()
+            .zip(counts)
+        {
+            let counted = (0..=u8::MAX).zip(counts).filter(|(_, count)| *count > 0);
+            counted.for_each(|(class, count)| *map.entry(class).or_default() += count);
         }
         work.add(batch.len() as u64)
     }
