@@ -155,8 +155,8 @@ fn bounds_give_what_reading_everything_gives_from_the_nodes_that_meet_them() {
     }
 }
 
-/// Of a file of more than a thousand nodes, a hundredth of the area takes less than 5 % of the
-/// bytes: the nodes that meet it, the hierarchy and the table of chunks, with what is read around
+/// A hundredth of the area of a file with more than a thousand nodes is read with less than 5 % of
+/// the bytes: the nodes that meet it, the hierarchy and the table of chunks, and what lies around
 /// these.
 #[test]
 fn a_hundredth_of_the_area_takes_less_than_a_twentieth_of_the_bytes() {

@@ -210,7 +210,7 @@ const OF_OTHERS: &[(&str, &str)] = &[
     ),
     (
         "lasclassify",
-        "`breakline ground IN -o OUT.laz` classifies the ground; buildings and plants are not told apart",
+        "`breakline ground IN -o OUT.laz` classifies the ground; buildings and plants are not distinguished",
     ),
     (
         "lasthin",

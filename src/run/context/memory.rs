@@ -32,7 +32,8 @@ const BYTES_A_MESH_BYTE: u64 = 3;
 /// Bytes per point while the ground is found, with the coordinates.
 const BYTES_A_FILTERED_POINT: u64 = 200;
 
-/// The same in tiles, where points are read from files and numbered.
+/// Bytes per point while the ground is found in tiles, whose points come from files with their
+/// numbers.
 const BYTES_A_TILED_POINT: u64 = 280;
 
 /// A need below this is not checked.
@@ -82,7 +83,7 @@ pub(crate) fn require_for_ground(count: u64) -> Result<()> {
     })
 }
 
-/// Returns how many points the ground can be found among in so many bytes.
+/// Returns the number of points among which the ground can be found with so many bytes of memory.
 pub(crate) fn filtered_in(bytes: u64) -> usize {
     usize::try_from(bytes / BYTES_A_TILED_POINT).unwrap_or(usize::MAX)
 }

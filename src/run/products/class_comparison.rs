@@ -16,7 +16,8 @@ const ROUNDING: f64 = 1e-12;
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ClassComparison {
-    /// For a class in the first file and a class in the second, the number of points that have both.
+    /// The number of points that have these classes, the one in the first file and the other in the
+    /// second.
     pub pairs: BTreeMap<[u8; 2], u64>,
 }
 

@@ -115,14 +115,12 @@ pub(crate) fn ground_in_tiles(
         })?;
     }
     let factors = factors(&units, &bounds);
-    let mut batch_in_metres = Vec::new();
-    let mut scale = |batch: &[[f64; 3]], take: &mut Take| {
-        batch_in_metres.clear();
-        batch_in_metres.extend(batch.iter().map(|point| scaled(point, factors)));
-        take(&batch_in_metres)
+    let in_metres = |take: &mut Take| {
+        points(&mut |batch| {
+            let scaled: Vec<_> = batch.iter().map(|point| scaled(point, factors)).collect();
+            take(&scaled)
+        })
     };
-    let scale = std::cell::RefCell::new(&mut scale);
-    let in_metres = |take: &mut Take| points(&mut |batch| (scale.borrow_mut())(batch, take));
     let limits = GroundTiles {
         at_once: memory::filtered_in(memory),
         folder,

@@ -259,10 +259,7 @@ impl Flow {
 
     /// Returns what may flow along an arc to the parent, in the direction from source to sink.
     fn toward(&self, parent: u32, tree: Tree) -> i32 {
-        match tree {
-            Tree::Source => self.arcs[self.arcs[parent as usize].back as usize].left,
-            _ => self.arcs[parent as usize].left,
-        }
+        self.onward(self.arcs[parent as usize].back, tree)
     }
 
     fn push(&mut self, arc: u32, amount: i32) {

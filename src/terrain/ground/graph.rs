@@ -51,8 +51,8 @@ impl Graph {
     ///
     /// A border between a low ground and a high object is cheap if the step is high. One between a
     /// low object and a high ground is so only as far as the terrain is steep. There a step also
-    /// counts only as far as both points are off the planes of each other's neighbors: a slope that
-    /// goes on is no step.
+    /// counts only as far as both points are off the planes of each other's neighbors, so that an
+    /// even slope is not taken for a step.
     pub(super) fn objects(&self, nodes: &Nodes, cells: &Cells, recipe: &Recipe) -> Vec<bool> {
         let whole = (recipe.weight / cells.side) as f32 * UNIT;
         let bell = |step: f32, scale: f64| (-(step / scale as f32).powi(2)).exp();

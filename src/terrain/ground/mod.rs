@@ -12,8 +12,8 @@
 //! 3. A minimum cut (Boykov and Kolmogorov 2004) divides the cells into ground and objects. It is
 //!    cheap to separate cells where a step is between them, so that a roof is cut out along its
 //!    rim, and a hillock, which has none, stays with the ground.
-//! 4. Where the terrain turns out to be steep, evidence counts less, and a slope that goes on is no
-//!    step; the cells are divided again. Roofs wider than the widest disk are found by their rim,
+//! 4. Where the terrain turns out to be steep, evidence counts less, and an even slope is no step;
+//!    the cells are divided again. Roofs wider than the widest disk are found by their rim,
 //!    bridges by their sides.
 //! 5. The cells that are ground make the terrain. Points near it are ground, the nearer the flatter
 //!    it is.
@@ -59,6 +59,7 @@ mod tiles;
 use std::sync::atomic::AtomicBool;
 
 pub use self::options::{Bridges, GroundOptions, PointClass};
+use self::spacing::is_finite;
 pub use self::spacing::{GroundGrid, GroundGridFinder};
 pub use self::tiles::{Doubt, GroundTiles, Take, TiledClasses, classify_in_tiles};
 use super::cancel::go_on;
@@ -114,7 +115,6 @@ pub(crate) fn classify_by(
     cancel: &AtomicBool,
 ) -> Result<Vec<PointClass>> {
     go_on(cancel)?;
-    let is_finite = |point: &[f64; 3]| point.iter().all(|value| value.is_finite());
     if !points.iter().all(is_finite) {
         let finite: Vec<[f64; 3]> = points.iter().copied().filter(is_finite).collect();
         let mut classes = classify_by(&finite, options, recipe, cancel)?.into_iter();

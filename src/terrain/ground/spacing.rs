@@ -22,7 +22,10 @@ pub struct GroundGrid {
 }
 
 impl GroundGrid {
-    /// Returns the grid of these points, or none if no point is finite.
+    /// Returns the grid of these points, which are in meters; none if no point is finite.
+    ///
+    /// # Complexity
+    /// Linear.
     pub fn of(points: &[[f64; 3]]) -> Option<GroundGrid> {
         let mut finder = GroundGridFinder::default();
         finder.add(points);
@@ -36,12 +39,19 @@ impl GroundGrid {
     }
 }
 
+/// Returns true if no coordinate is infinite or NaN.
+pub(super) fn is_finite(point: &[f64; 3]) -> bool {
+    point.iter().all(|value| value.is_finite())
+}
+
 /// Finds the grid of points that are given in batches, in any order.
+///
+/// In memory is one entry for each square of 4 m that has points.
 #[derive(Debug, Clone, Default)]
 pub struct GroundGridFinder {
     low: Option<[f64; 2]>,
     count: u64,
-    /// Of whole meters, so that the order does not matter.
+    /// The sum, in whole meters: sums of fractions would depend on the order.
     heights: i128,
     squares: HashSet<(i64, i64), FxBuildHasher>,
 }
@@ -51,7 +61,7 @@ impl GroundGridFinder {
     pub fn add(&mut self, points: &[[f64; 3]]) {
         let mut last = None;
         for &point in points {
-            if !point.iter().all(|value| value.is_finite()) {
+            if !is_finite(&point) {
                 continue;
             }
             self.lower([point[0], point[1]]);
@@ -68,7 +78,7 @@ impl GroundGridFinder {
         }
     }
 
-    /// Takes what another finder has taken.
+    /// Takes the points of another finder, too.
     pub fn merge(&mut self, other: &GroundGridFinder) {
         if let Some(theirs) = other.low {
             self.lower(theirs);

@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
+use super::spacing::is_finite;
 use super::{GroundGrid, GroundGridFinder, GroundOptions, PointClass, classify};
 use crate::error::{Error, Result, Setting, wording};
 use crate::terrain::records::{Record, SortedRecords, Sorter};
@@ -52,12 +53,12 @@ pub struct Doubt {
 
 /// Returns the class of each point like [`classify`], for points that do not fit into memory.
 ///
-/// `points` passes all of them on, in batches, whenever it is called: twice, in the same order.
+/// `points` is called twice, and passes on all points, in meters, in batches and in the same order.
 /// `decided` gets the number of points of each tile.
 ///
 /// Tiles are squares, or several of them. Each is filtered with the points around it, as far as
 /// [`GroundGrid::reach`] says, on the grid of the whole. A minimum cut is not local, so neighbors
-/// are compared in a strip along their border; where they differ, the tile is filtered again with
+/// are compared in a strip along their border; where they differ, both are filtered again with
 /// twice the surrounding, until two in a row agree. What memory has no room for is a [`Doubt`].
 /// The classes depend on the set of points and on `at_once`.
 ///
@@ -67,7 +68,7 @@ pub struct Doubt {
 ///
 /// # Complexity
 /// That of [`classify`], for some more points, and O(n log n) to sort them. Memory: that of the
-/// largest tile, one byte a point, and 32 for each point within an eighth of the reach of a border.
+/// largest tile, one byte a point, and 24 for each point within an eighth of the reach of a border.
 pub fn classify_in_tiles(
     points: &dyn Fn(&mut Take) -> Result<()>,
     options: &GroundOptions,
@@ -100,24 +101,27 @@ pub fn classify_in_tiles(
     let tiles = squares.divided(limits.at_once)?;
     found.tiles = tiles.len();
 
-    let mut votes = Vec::new();
-    for (number, tile) in tiles.iter().enumerate() {
-        let filtered = squares.filter((number, tile), REACH, &options, cancel)?;
+    // Of each tile, what it says of points of its neighbors.
+    let mut votes = Vec::with_capacity(tiles.len());
+    for tile in &tiles {
+        let filtered = squares.filter(tile, REACH, &options, cancel)?;
         for &(index, class) in &filtered.own {
             found.classes[index] = class;
         }
-        votes.extend(filtered.strip);
+        votes.push(filtered.strip);
         decided(filtered.own.len())?;
     }
     let mut disputed = BTreeSet::new();
-    for vote in votes {
-        if found.classes[vote.index] != vote.class {
+    for (voter, votes) in votes.iter().enumerate() {
+        let is_other = |vote: &&Vote| found.classes[vote.index] != vote.class;
+        for vote in votes.iter().filter(is_other) {
             let is_in = |tile: &Tile| tile.contains(vote.square);
             disputed.extend(tiles.iter().position(is_in));
-            disputed.insert(vote.tile);
+            disputed.insert(voter);
         }
     }
-    for tile in disputed.into_iter().map(|number| (number, &tiles[number])) {
+    drop(votes);
+    for tile in disputed.into_iter().map(|number| &tiles[number]) {
         let doubt = squares.agree(tile, &options, limits, cancel, &mut found.classes)?;
         found.doubts.extend(doubt);
     }
@@ -168,8 +172,6 @@ impl Tile {
 
 /// What a tile says of a point of its neighbor.
 struct Vote {
-    /// The number of the tile.
-    tile: usize,
     index: usize,
     square: [u32; 2],
     class: PointClass,
@@ -208,10 +210,11 @@ impl Squares {
         points(&mut |batch| {
             let first = classes.len();
             classes.resize(first + batch.len(), PointClass::Object);
-            for (&[px, py, pz], index) in batch.iter().zip(first..) {
-                if !(px.is_finite() && py.is_finite() && pz.is_finite()) {
-                    continue;
-                }
+            let finite = batch
+                .iter()
+                .zip(first..)
+                .filter(|(point, _)| is_finite(point));
+            for (&[px, py, pz], index) in finite {
                 let number = |value: f64, origin: f64| ((value - origin) / side) as u32;
                 let (column, row) = (number(px, x), number(py, y));
                 *counts.entry((row, column)).or_insert(0) += 1;
@@ -239,10 +242,10 @@ impl Squares {
         }];
         let mut tiles = Vec::new();
         while let Some(tile) = open.pop() {
-            let around = self.load(&tile.grown(REACH));
             if self.count(&tile) == 0 {
                 continue;
             }
+            let around = self.load(&tile.grown(REACH));
             match tile.halves() {
                 _ if around <= at_once => tiles.push(tile),
                 Some([first, second]) => open.extend([second, first]),
@@ -294,7 +297,7 @@ impl Squares {
     /// Filters a tile with so many squares around it.
     fn filter(
         &self,
-        (number, tile): (usize, &Tile),
+        tile: &Tile,
         around: u32,
         options: &GroundOptions,
         cancel: &AtomicBool,
@@ -328,7 +331,6 @@ impl Squares {
                 filtered.own.push((index, class));
             } else if is_near(point) {
                 filtered.strip.push(Vote {
-                    tile: number,
                     index,
                     square,
                     class,
@@ -356,7 +358,7 @@ impl Squares {
     /// Filters a tile again with ever more around it, until its classes stay.
     fn agree(
         &self,
-        (number, tile): (usize, &Tile),
+        tile: &Tile,
         options: &GroundOptions,
         limits: &GroundTiles,
         cancel: &AtomicBool,
@@ -367,13 +369,13 @@ impl Squares {
         while self.count(&tile.grown(around)) < self.counts.values().sum() {
             around *= 2;
             if self.load(&tile.grown(around)) > limits.at_once {
-                // The first dispute is with a neighbor, and not counted in points.
+                // Before anything was filtered again, only a neighbor differs.
                 return Ok(Some(Doubt {
                     tile: self.extent(tile),
                     points: changed.unwrap_or(0),
                 }));
             }
-            let own = self.filter((number, tile), around, options, cancel)?.own;
+            let own = self.filter(tile, around, options, cancel)?.own;
             let differ = own
                 .iter()
                 .filter(|&&(index, class)| classes[index] != class);

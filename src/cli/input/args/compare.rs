@@ -26,9 +26,9 @@ Example:
 pub(crate) struct CompareArgs {
     /// Compare the classes of the same points in two files, in the same order
     ///
-    /// Counts points by both classes. Type I is the share of the ground (class 2) of the second
-    /// file that is none in the first; type II is what is ground in the first only, as a share of
-    /// what is no ground in the second. Of the other options, --json alone goes with it.
+    /// Counts points by their classes in both files. The second file is the reference: type I is
+    /// the share of its ground points (class 2) that are not ground in the first file, type II the
+    /// share of its other points that are. Only --json can be added.
     #[arg(long, conflicts_with_all = ["changed", "min_area", "output"], help_heading = "Comparison")]
     pub(crate) classes: bool,
 
