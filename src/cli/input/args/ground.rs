@@ -79,9 +79,9 @@ pub(crate) struct GroundArgs {
 
     /// Memory for the points, such as `2GB` [default: half of what is free]
     ///
-    /// The filter needs about 200 bytes for each point. What does not fit is filtered in tiles. Where
-    /// two tiles do not agree, they are filtered again with more points around them. Files in TMPDIR
-    /// (else in /var/tmp) then take 80 bytes for each point.
+    /// The filter needs about 200 bytes for each point. What does not fit is filtered in tiles.
+    /// Where two tiles do not agree, they are filtered again with more points around them. Files in
+    /// TMPDIR (else in /var/tmp) then take 80 bytes for each point.
     #[arg(long, value_name = "SIZE", value_parser = memory_of, help_heading = "Ground")]
     pub(crate) memory: Option<u64>,
 
